@@ -7,7 +7,7 @@ namespace ligature::sim {
 void Wire::submit(const can::Frame& frame, int sender, Time ready) {
   const auto index = static_cast<std::size_t>(sender);
   if (queues_.size() <= index) queues_.resize(index + 1);
-  const Time bits{charge_time_ ? can::bits_to_ns(can::frame_bits(frame)) : 0};
+  const Time bits{charge_time_ ? can::frame_ns(frame) : 0};
   queues_[index].push_back({frame, ready, bits});
 }
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "protocol/can/bit_time.hpp"
+#include "protocol/can/fd_time.hpp"
 #include "protocol/can/frame.hpp"
 #include "sim_device/deadline.hpp"
 

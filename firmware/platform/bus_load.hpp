@@ -4,22 +4,22 @@
 #include <utility>
 
 #include "firmware/rt/period.hpp"
-#include "protocol/can/bit_time.hpp"
+#include "protocol/can/fd_time.hpp"
 
 namespace ligature::platform {
 
-/// Counts the bits of all frames of a period at 1 Mbit/s.
+/// Adds up the times of all frames of a period.
 class BusLoad {
  public:
-  void add(const can::Frame& frame) noexcept { bits_ += can::frame_bits(frame); }
-  void begin_period() noexcept { bits_of_last_period_ = std::exchange(bits_, 0U); }
+  void add(const can::Frame& frame) noexcept { busy_ns_ += can::frame_ns(frame); }
+  void begin_period() noexcept { busy_ns_of_last_period_ = std::exchange(busy_ns_, 0); }
   /// Share of the last whole period, 0 to 1.
   [[nodiscard]] float of_last_period() const noexcept {
-    return static_cast<float>(can::bits_to_ns(bits_of_last_period_)) / static_cast<float>(rt::kPeriod.count());
+    return static_cast<float>(busy_ns_of_last_period_) / static_cast<float>(rt::kPeriod.count());
   }
 
  private:
-  unsigned bits_ = 0, bits_of_last_period_ = 0;
+  std::int64_t busy_ns_ = 0, busy_ns_of_last_period_ = 0;
 };
 
 }  // namespace ligature::platform

@@ -4,11 +4,13 @@
 #include <linux/can/error.h>
 #include <linux/can/raw.h>
 #include <net/if.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 namespace ligature::platform {
@@ -21,17 +23,18 @@ Opened refuse(OpenFailure kind, const std::string& url, const std::string& why) 
 }
 
 template <class Address>
-Opened connected(int fd, const std::string& url, const Address& address, bool bind_it, BusClaim claim) {
+Opened connected(int fd, const std::string& url, const Address& address, bool bind_it, BusClaim claim,
+                 can::Network network) {
   const auto* a = reinterpret_cast<const sockaddr*>(&address);
   if ((bind_it ? bind(fd, a, sizeof address) : connect(fd, a, sizeof address)) != 0) {
     const std::string why = std::strerror(errno);
     close(fd);
     return refuse(OpenFailure::kNotThere, url, why + (bind_it ? "" : "; remedy: start the hand that serves it"));
   }
-  return std::make_unique<SocketBus>(fd, std::move(claim));
+  return std::make_unique<SocketBus>(fd, std::move(claim), network);
 }
 
-Opened open_local(const std::string& url, const std::string& path) {
+Opened open_local(const std::string& url, const std::string& path, can::Network network) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   if (path.empty() || path.size() >= sizeof address.sun_path) {
@@ -53,10 +56,23 @@ Opened open_local(const std::string& url, const std::string& path) {
   if (const auto* why = std::get_if<std::string>(&claim)) return refuse(OpenFailure::kTaken, url, *why);
   const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   if (fd < 0) return refuse(OpenFailure::kNotThere, url, std::strerror(errno));
-  return connected(fd, url, address, false, std::get<BusClaim>(std::move(claim)));
+  return connected(fd, url, address, false, std::get<BusClaim>(std::move(claim)), network);
 }
 
-Opened open_socketcan(const std::string& url, const std::string& interface) {
+/// Why this interface cannot carry FD frames; empty if it can.
+std::string no_fd(int fd, const std::string& interface) {
+  constexpr int kOn = 1;
+  ifreq request{};
+  interface.copy(request.ifr_name, IFNAMSIZ - 1);
+  if (ioctl(fd, SIOCGIFMTU, &request) != 0) return std::strerror(errno);
+  if (request.ifr_mtu != CANFD_MTU)
+    return "carries no CAN-FD frames, which these drives need; remedy: ip link set " + interface +
+           " type can bitrate 1000000 dbitrate 5000000 fd on (a vcan: ip link set " + interface + " mtu 72)";
+  if (setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &kOn, sizeof kOn) != 0) return std::strerror(errno);
+  return {};
+}
+
+Opened open_socketcan(const std::string& url, const std::string& interface, can::Network network) {
   if (interface.empty() || interface.size() >= IFNAMSIZ) {
     return refuse(OpenFailure::kUsage, url, "no such name for an interface");
   }
@@ -75,20 +91,24 @@ Opened open_socketcan(const std::string& url, const std::string& interface) {
     close(fd);
     return refuse(OpenFailure::kUsage, url, "no error frames from this interface: " + why);
   }
+  if (const std::string why = network == can::Network::kFd ? no_fd(fd, interface) : ""; !why.empty()) {
+    close(fd);
+    return refuse(OpenFailure::kUsage, url, why);
+  }
   auto claim = BusClaim::take("can/" + interface);
   if (const auto* why = std::get_if<std::string>(&claim)) {
     close(fd);
     return refuse(OpenFailure::kTaken, url, *why);
   }
-  return connected(fd, url, address, true, std::get<BusClaim>(std::move(claim)));
+  return connected(fd, url, address, true, std::get<BusClaim>(std::move(claim)), network);
 }
 
 }  // namespace
 
-Opened open_can_bus(const std::string& url) {
+Opened open_can_bus(const std::string& url, can::Network network) {
   const auto starts = [&](const char* scheme) { return url.rfind(scheme, 0) == 0; };
-  if (starts("local:")) return open_local(url, url.substr(6));
-  if (starts("socketcan:")) return open_socketcan(url, url.substr(10));
+  if (starts("local:")) return open_local(url, url.substr(6), network);
+  if (starts("socketcan:")) return open_socketcan(url, url.substr(10), network);
   return refuse(OpenFailure::kUsage, url, "allowed local:/path/socket or socketcan:INTERFACE");
 }
 
@@ -111,13 +131,14 @@ void SocketBus::lose(Loss how) noexcept {
   loss_ = how;
   if (how != Loss::kDown) return;
   constexpr int kMost = 1024;  // bounds the loop; far more frames than a period brings
-  can::LocalPacket dropped;
+  std::array<std::uint8_t, can::kLocalFdPacketBytes> dropped;
   for (int i = 0; i < kMost && recv(fd_, dropped.data(), dropped.size(), MSG_DONTWAIT) > 0; ++i) {
   }
 }
 
 /// Handles an error frame of the CAN controller. @return true if it was one, false for a normal frame.
-bool SocketBus::take_error_frame(const can::LocalPacket& packet) noexcept {
+bool SocketBus::take_error_frame(std::span<const std::uint8_t> packet) noexcept {
+  if (packet.size() != can::kLocalPacketBytes) return false;
   std::uint32_t id = 0;
   std::memcpy(&id, packet.data(), sizeof id);
   if ((id & CAN_ERR_FLAG) == 0) return false;
@@ -137,7 +158,7 @@ bool SocketBus::send(const can::Frame& frame) noexcept {
 
 Receive SocketBus::receive(can::Frame& frame) noexcept {
   constexpr int kMost = 64;  // bounds the frames skipped per call, so that a flooded bus cannot block the caller
-  can::LocalPacket packet;
+  std::array<std::uint8_t, can::kLocalFdPacketBytes + 1> packet;  // one byte more, to detect packets that are too long
   for (int i = 0; i < kMost && loss_ != Loss::kForGood; ++i) {
     const ssize_t got = recv(fd_, packet.data(), packet.size(), MSG_DONTWAIT);
     if (got < 0) {
@@ -149,12 +170,12 @@ Receive SocketBus::receive(can::Frame& frame) noexcept {
       break;
     }
     const auto bytes = std::span(packet).first(static_cast<std::size_t>(got));
-    if (got == static_cast<ssize_t>(packet.size()) && take_error_frame(packet)) {
+    if (take_error_frame(bytes)) {
       if (is_lost()) return Receive::kLost;
       continue;
     }
-    const auto decoded = can::from_packet(bytes);
-    if (!decoded || loss_ == Loss::kBusOff) continue;  // extended frames are ignored
+    const auto decoded = can::from_packet(bytes, network_);
+    if (!decoded || loss_ == Loss::kBusOff) continue;  // frames of another network are ignored
     loss_ = Loss::kNone;
     frame = *decoded;
     return Receive::kFrame;

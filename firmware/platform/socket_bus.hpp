@@ -1,9 +1,10 @@
 #pragma once
-// CAN bus over a socket: a Unix socket to a simulated hand, or SocketCAN. Both carry the same 16-byte frame images in
-// packets, so one class serves both.
+// CAN bus over a socket: a Unix socket to a simulated hand, or SocketCAN. Both carry the same frame images in packets,
+// so one class serves both.
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <variant>
@@ -20,7 +21,8 @@ namespace ligature::platform {
 class SocketBus final : public CanBus {
  public:
   /// Takes ownership of the descriptor, which must be non-blocking.
-  explicit SocketBus(int descriptor, BusClaim claim = {}) noexcept : fd_(descriptor), claim_(std::move(claim)) {}
+  explicit SocketBus(int descriptor, BusClaim claim = {}, can::Network network = can::Network::kClassic) noexcept
+      : fd_(descriptor), claim_(std::move(claim)), network_(network) {}
   ~SocketBus() override;
   SocketBus(const SocketBus&) = delete;
   SocketBus& operator=(const SocketBus&) = delete;
@@ -35,10 +37,11 @@ class SocketBus final : public CanBus {
 
   bool note(int error) noexcept;
   void lose(Loss how) noexcept;
-  bool take_error_frame(const can::LocalPacket& packet) noexcept;
+  bool take_error_frame(std::span<const std::uint8_t> packet) noexcept;
 
   int fd_;
   BusClaim claim_;
+  can::Network network_;
   Loss loss_ = Loss::kNone;
 };
 
@@ -53,6 +56,8 @@ struct OpenError {
 };
 
 /// Opens `local:/path/socket` (where the simulated hand listens) or `socketcan:can0`, for exclusive use until closed.
-[[nodiscard]] std::variant<std::unique_ptr<CanBus>, OpenError> open_can_bus(const std::string& url);
+/// @param network of the drives; an interface that cannot carry FD frames is refused for kFd
+[[nodiscard]] std::variant<std::unique_ptr<CanBus>, OpenError> open_can_bus(
+    const std::string& url, can::Network network = can::Network::kClassic);
 
 }  // namespace ligature::platform

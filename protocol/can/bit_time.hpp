@@ -1,7 +1,7 @@
 #pragma once
 // Duration of a frame on the bus. Classic CAN, 11-bit identifier (ISO 11898-1): start bit, identifier, control field,
 // data and CRC are 34 + 8 n bits (n data bytes) and are stuffed; CRC delimiter, acknowledge, end of frame and the 3
-// bits of interframe space are 13 more. Stuffing adds at most floor((34 + 8 n - 1) / 4) bits.
+// bits of interframe space are 13 more. Stuffing adds at most floor((34 + 8 n - 1) / 4) bits. CAN FD: fd_time.hpp.
 
 #include <cstdint>
 
@@ -21,8 +21,25 @@ inline constexpr unsigned kUnstuffedTailBits = 10 + kInterframeBits;
   return min_frame_bits(dlc) + (stuffable_bits(dlc) - 1) / 4;
 }
 
-/// Computes the CRC and counts stuff bits of a frame, bit by bit. CRC polynomial: x^15+x^14+x^10+x^8+x^7+x^4+x^3+1.
 /// Stuffing: after five equal bits one opposite bit is inserted, which counts as the first of the next run.
+class StuffRun {
+ public:
+  /// @return whether a bit is inserted after this one
+  constexpr bool push(bool bit) noexcept {
+    run_ = (run_ > 0 && bit == last_) ? run_ + 1 : 1;
+    last_ = bit;
+    if (run_ < 5) return false;
+    last_ = !bit;
+    run_ = 1;
+    return true;
+  }
+
+ private:
+  int run_ = 0;
+  bool last_ = false;
+};
+
+/// Computes the CRC and counts stuff bits of a frame, bit by bit. CRC polynomial: x^15+x^14+x^10+x^8+x^7+x^4+x^3+1.
 class StuffCounter {
  public:
   constexpr void push(bool bit) noexcept {
@@ -43,22 +60,15 @@ class StuffCounter {
   [[nodiscard]] constexpr std::uint32_t crc() const noexcept { return crc_; }
 
  private:
-  constexpr void stuff(bool bit) noexcept {
-    run_ = (run_ > 0 && bit == last_) ? run_ + 1 : 1;
-    last_ = bit;
-    if (run_ == 5) {
-      ++inserted_;
-      last_ = !bit;
-      run_ = 1;
-    }
-  }
+  constexpr void stuff(bool bit) noexcept { inserted_ += run_.push(bit) ? 1U : 0U; }
+
   std::uint32_t crc_ = 0;
   unsigned inserted_ = 0;
-  int run_ = 0;
-  bool last_ = false;
+  StuffRun run_;
 };
 
-/// Exact number of bits of this frame on the wire, including stuff bits and interframe space. Takes about 0.3 us.
+/// Exact number of bits of this classic frame on the wire, including stuff bits and interframe space. Takes about 0.3
+/// us.
 [[nodiscard]] constexpr unsigned frame_bits(const Frame& f) noexcept {
   StuffCounter counter;
   const unsigned bytes = is_remote(f) ? 0U : f.dlc;

@@ -103,6 +103,6 @@ inline constexpr PdoField kTargetTorque = field_of(Pdo::kRpdo1, od::kTargetTorqu
 
 static_assert(decode_rpdo1(kElbow, encode(kElbow, Rpdo1{0x000F, -3000})) == Rpdo1{0x000F, -3000});
 static_assert(encode(kWaist, Tpdo1{0x1237, -2, -1, 0}).data ==
-              std::array<std::uint8_t, 8>{0x37, 0x12, 0xFE, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF});
+              decltype(Frame::data){0x37, 0x12, 0xFE, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF});
 
 }  // namespace ligature::can

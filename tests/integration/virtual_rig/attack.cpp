@@ -167,7 +167,7 @@ void AttackPlan::choose_foreign(test::Random& random) {
       case 4:
         f.what = "joint message";
         f.frame = {0x180U + node, 8, {}};
-        for (auto& b : f.frame.data) b = byte(static_cast<std::int64_t>(random() & 0xFF));
+        for (auto& b : std::span(f.frame.data).first(f.frame.dlc)) b = byte(static_cast<std::int64_t>(random() & 0xFF));
         break;
       case 5:
         f.what = "emergency";

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
 #include <string_view>
 
 #include "protocol/can/codec.hpp"
+#include "protocol/can/fd_time.hpp"
 #include "protocol/can/nmt.hpp"
 #include "tests/support/random.hpp"
 
@@ -48,6 +50,64 @@ TEST(BitTime, OneTickTakesBetween617And745Microseconds) {
     EXPECT_GE(bits, 617U);
     EXPECT_LE(bits, 745U);
   }
+}
+
+/// The same by another way: the frame as text, with the stuff bits written into it.
+BitCount by_text(const Frame& f) {
+  const auto text = [](std::uint64_t value, int bits) {
+    std::string s;
+    while (bits-- > 0) s += (value >> bits & 1U) != 0 ? '1' : '0';
+    return s;
+  };
+  constexpr unsigned kLengths[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64};
+  unsigned code = 0;
+  while (kLengths[code] != f.dlc) ++code;
+  std::string bits = "0";
+  if ((f.id & kExtendedBit) == 0)
+    bits += text(f.id, 11) + "00101";
+  else
+    bits += text(f.id >> 18U & 0x7FFU, 11) + "11" + text(f.id & 0x3FFFFU, 18) + "0101";
+  std::size_t slow = bits.size();
+  bits += "0" + text(code, 4);
+  for (std::size_t i = 0; i < f.dlc; ++i) bits += text(f.data[i], 8);
+  for (std::size_t i = 4; i + 1 < bits.size(); ++i) {
+    const std::string five = bits.substr(i - 4, 5);
+    if (five != "00000" && five != "11111") continue;
+    bits.insert(i + 1, five[0] == '0' ? "1" : "0");
+    if (i < slow) ++slow;
+  }
+  // Stuff count and CRC in groups of four, each after a stuff bit; CRC delimiter, 2 of acknowledge, 7 of the end, 3
+  // between
+  const std::size_t crc = f.dlc <= 16 ? 27 : 32;
+  return {static_cast<unsigned>(slow + 1 + 2 + 7 + 3), static_cast<unsigned>(bits.size() - slow + crc)};
+}
+
+TEST(BitTime, OfFdFramesIsThatOfTheFrameWrittenOut) {
+  test::Random random(9);
+  for (int i = 0; i < 20000; ++i) {
+    Frame f{static_cast<std::uint32_t>(random()) & kMaxId, fd_length(random() % 65), {}, Format::kFdFast};
+    if (random.happens(0.5)) f.id = kExtendedBit | (static_cast<std::uint32_t>(random()) & kMaxExtendedId);
+    const bool runs = i % 2 == 0;
+    if (i % 4 == 0) f.id &= kExtendedBit;
+    for (std::size_t b = 0; b < f.dlc; ++b)
+      f.data[b] = static_cast<std::uint8_t>(runs ? (random() % 2) * 0xFF : random());
+    const BitCount exact = fd_bits(f), other = by_text(f);
+    ASSERT_EQ(exact.slow, other.slow) << i;
+    ASSERT_EQ(exact.fast, other.fast) << i;
+    EXPECT_GE(exact.ns(), min_fd_bits(f.dlc, is_extended(f)).ns());
+    EXPECT_LE(exact.ns(), max_fd_bits(f.dlc, is_extended(f)).ns());
+    EXPECT_EQ(frame_ns(f), exact.slow * 1000 + exact.fast * 200);
+    f.format = Format::kFd;
+    EXPECT_EQ(fd_bits(f).fast, 0U) << "one rate";
+  }
+}
+
+TEST(BitTime, OfAnFdFrameDoneByHand) {
+  // Identifier 0x555: no run of five bits in 0 10101010101 00101 | 0 0001 01010101. 17 + 13 bits slow; fast 5 + 8 + 27.
+  const BitCount bits = fd_bits({0x555, 1, {0x55}, Format::kFdFast});
+  EXPECT_EQ(bits.slow, 30U);
+  EXPECT_EQ(bits.fast, 40U);
+  EXPECT_EQ(bits.ns(), 38000);
 }
 
 }  // namespace

@@ -71,6 +71,47 @@ TEST(LocalWire, AnyFrameSurvivesTheRoundTrip) {
   }
 }
 
+TEST(LocalWire, AnyFrameOfAnFdNetworkSurvivesTheRoundTrip) {
+  test::Random random(4);
+  for (int i = 0; i < 5000; ++i) {
+    Frame f{static_cast<std::uint32_t>(random()) & kMaxId, fd_length(random() % 65), {}};
+    if (random.happens(0.5)) f.id = kExtendedBit | (static_cast<std::uint32_t>(random()) & kMaxExtendedId);
+    f.format = f.dlc > kMaxDlc || random.happens(0.5) ? Format::kFdFast : Format::kClassic;
+    if (f.format != Format::kClassic && random.happens(0.5)) f.format = Format::kFd;
+    for (std::size_t b = 0; b < f.dlc; ++b) f.data[b] = static_cast<std::uint8_t>(random());
+    const LocalPacket p = to_packet(f);
+    EXPECT_EQ(p.size(), f.format == Format::kClassic ? 16U : 72U);
+    EXPECT_EQ(from_packet(p, Network::kFd), f);
+    const bool is_classic = f.format == Format::kClassic && !is_extended(f);
+    EXPECT_EQ(from_packet(p).has_value(), is_classic) << "a reader on a classic bus";
+  }
+}
+
+TEST(LocalWire, RefusesWhatIsNoFdFrame) {
+  LocalPacket p = to_packet(Frame{0x100, 12, {}, Format::kFdFast});
+  EXPECT_TRUE(from_packet(p, Network::kFd));
+  EXPECT_FALSE(from_packet(std::span(p).first(71), Network::kFd));
+  p[4] = 13;  // there is no such length
+  EXPECT_FALSE(from_packet(p, Network::kFd));
+  p[4] = 12;
+  p[3] = 0x40;  // there are no remote frames
+  EXPECT_FALSE(from_packet(p, Network::kFd));
+  p[3] = 0x20;  // an error frame
+  EXPECT_FALSE(from_packet(p, Network::kFd));
+  p[3] = 0x00;
+  p[2] = 0x01;  // more than 11 bits without the flag
+  EXPECT_FALSE(from_packet(p, Network::kFd));
+}
+
+TEST(FdLength, IsTheNextOneThatThereIs) {
+  EXPECT_EQ(fd_length(0), 0);
+  EXPECT_EQ(fd_length(8), 8);
+  EXPECT_EQ(fd_length(9), 12);
+  EXPECT_EQ(fd_length(24), 24);
+  EXPECT_EQ(fd_length(33), 48);
+  EXPECT_EQ(fd_length(49), 64);
+}
+
 TEST(LocalWire, RefusesWhatIsNoDataFrame) {
   LocalPacket p = to_packet(Frame{0x181, 8, {}});
   EXPECT_FALSE(from_packet(std::span(p).first(15)));

@@ -47,7 +47,7 @@ TEST(Emergency, ItsNumbersAreThoseOfCiA301) {
 }
 
 TEST(Emergency, IsLittleEndian) {
-  EXPECT_EQ(encode(Emergency{kWaist, emcy::kRpdoTimeout, 0x11}).data, (std::array<std::uint8_t, 8>{0x50, 0x82, 0x11}));
+  EXPECT_EQ(encode(Emergency{kWaist, emcy::kRpdoTimeout, 0x11}).data, (decltype(Frame::data){0x50, 0x82, 0x11}));
 }
 
 TEST(Sdo, EveryTransferSurvivesTheRoundTrip) {
@@ -70,7 +70,7 @@ TEST(Sdo, EveryTransferSurvivesTheRoundTrip) {
 TEST(Sdo, BytesAreThoseOfTheStandard) {
   const Frame f = sdo_write(kWaist, od::kConsumerHeartbeat, 0x007F012C, 4);
   EXPECT_EQ(f.id, 0x601U);
-  EXPECT_EQ(f.data, (std::array<std::uint8_t, 8>{0x23, 0x16, 0x10, 0x01, 0x2C, 0x01, 0x7F, 0x00}));
+  EXPECT_EQ(f.data, (decltype(Frame::data){0x23, 0x16, 0x10, 0x01, 0x2C, 0x01, 0x7F, 0x00}));
   EXPECT_EQ(sdo_read(kWaist, od::kStatusword).data[0], 0x40);
 }
 

@@ -71,6 +71,25 @@ TEST_F(SocketBusTest, CarriesFramesBothWays) {
   EXPECT_EQ(bus->receive(back), Receive::kNothing);
 }
 
+TEST_F(SocketBusTest, CarriesFdFramesIfTheDrivesNeedThem) {
+  const can::Frame fd{can::kExtendedBit | 0x8001, 12, {1, 2, 3}, can::Format::kFdFast};
+  const auto packet = can::to_packet(fd);
+  ASSERT_EQ(::send(peer, packet.data(), packet.size(), 0), 72);
+  can::Frame back;
+  EXPECT_EQ(bus->receive(back), Receive::kNothing) << "a bus for classic drives";
+  int pair[2];
+  ASSERT_EQ(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK, 0, pair), 0);
+  SocketBus fast(pair[0], {}, can::Network::kFd);
+  ASSERT_EQ(::send(pair[1], packet.data(), packet.size(), 0), 72);
+  EXPECT_EQ(fast.receive(back), Receive::kFrame);
+  EXPECT_EQ(back, fd);
+  EXPECT_TRUE(fast.send(fd));
+  can::LocalPacket sent(can::kLocalFdPacketBytes);
+  EXPECT_EQ(recv(pair[1], sent.data(), sent.size(), 0), 72);
+  EXPECT_EQ(can::from_packet(sent, can::Network::kFd), fd);
+  close(pair[1]);
+}
+
 TEST_F(SocketBusTest, SeesAClosedPeerAtOnce) {
   close(peer);
   peer = -1;
