@@ -61,7 +61,7 @@ std::vector<can::Frame> OdriveDrives::example_samples() const {
   std::vector<can::Frame> frames;
   for (unsigned node = 1; node <= rt::kJoints; ++node)
     frames.push_back({odrive::id_of(node, odrive::Command::kEstimates), odrive::kWordBytes, {}});
-  frames.push_back({profile_.buttons_id, odrive::kButtonsBytes, {}});
+  frames.push_back({profile_.buttons_id, ButtonModule::kBytes, {}});
   return frames;
 }
 

@@ -32,7 +32,7 @@ enum class Command : std::uint8_t {
 inline constexpr std::uint8_t kIdle = 1, kClosedLoop = 8;  ///< states of an axis
 inline constexpr std::uint32_t kWatchdogExpired = 0x0100'0000;
 inline constexpr std::uint32_t kTorqueControl = 1, kPassthrough = 1;
-inline constexpr unsigned kWordBytes = 8, kTorqueBytes = 4, kButtonsBytes = 2;  ///< the answers have 8 bytes
+inline constexpr unsigned kWordBytes = 8, kTorqueBytes = 4;  ///< the answers have 8 bytes
 
 [[nodiscard]] constexpr std::uint32_t id_of(unsigned node, Command command) noexcept {
   return node << 5U | static_cast<std::uint32_t>(command);

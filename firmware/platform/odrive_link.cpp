@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 #include <numbers>
-#include <utility>
 
 #include "protocol/can/units.hpp"
 
@@ -35,27 +34,19 @@ void OdriveLink::forget_targets() noexcept {
 void OdriveLink::request() noexcept {
   drain();
   load_.begin_period();
-  arrived_ = 0;
   foreign_periods_ = std::max(foreign_periods_ - 1, 0);
-  if (age_ticks_ < std::numeric_limits<std::int32_t>::max()) ++age_ticks_;
   for (Node& node : nodes_) {
     node.silent = std::min(node.silent + 1, kMany);
     was_away_ = was_away_ || node.silent > kMissedBeats * profile_.heartbeat_ms;
   }
-  if (!may_ask_ || (outstanding_ != 0 && quiet_ < kQuiet))
-    quiet_ = std::min(quiet_ + 1, kQuiet);
-  else
-    ask_all();
+  if (answers_.begin_period(may_ask_)) ask_all();
 }
 
 void OdriveLink::ask_all() noexcept {
-  quiet_ = 0;
-  outstanding_ = 0;
   for (std::size_t j = 0; j < rt::kJoints; ++j) {
     if (!send(odrive::ask(node_of(j), odrive::Command::kEstimates))) continue;
-    outstanding_ |= 1U << j;
-    nodes_[j].owed = std::min(nodes_[j].owed + 1, kMany);
-    if (j + 1 == rt::kJoints) outstanding_ |= kButtonsPart;  // the module answers the request to the last drive
+    answers_.asked(j);
+    if (j + 1 == rt::kJoints) answers_.asked(AnswerSet::kButtons);  // the module answers the request to the last drive
   }
 }
 
@@ -100,13 +91,14 @@ void OdriveLink::take(const can::Frame& frame) noexcept {
     case odrive::Command::kGetTorques:
       node.target_Nm = number;
       return;
-    case odrive::Command::kEstimates:
-      node.tells_unasked = node.tells_unasked || node.owed == 0;
-      node.owed = std::max(node.owed - 1, 0);
-      if (!number || !is_answer(1U << address->joint)) return;
+    case odrive::Command::kEstimates: {
+      const auto answer = answers_.take(address->joint);
+      node.tells_unasked = node.tells_unasked || answer == AnswerSet::Answer::kUnasked;
+      if (!number || answer != AnswerSet::Answer::kInTime) return;
       node.answers = true;
       pending_rev_[address->joint] = *number;
-      return take_part(1U << address->joint);
+      return take_part(address->joint);
+    }
     default:
       return;
   }
@@ -122,43 +114,26 @@ void OdriveLink::take_beat(Node& node, const can::Frame& frame) noexcept {
   node.was_off = node.was_off || !node.is_on();
 }
 
-/// The word of docs/wire.md. Its counter is a sign of life: a frame that does not change it is none.
 void OdriveLink::take_buttons(const can::Frame& frame) noexcept {
-  if (frame.dlc != odrive::kButtonsBytes || !is_answer(kButtonsPart)) return;
-  const auto word = static_cast<std::uint16_t>(frame.data[0] | frame.data[1] << 8U);
-  const bool first = !std::exchange(has_word_, true);
-  const bool moved = !first && can::profile::life_of(word) != can::profile::life_of(pending_buttons_);
-  pending_buttons_ = word;
-  still_frames_ = moved ? 0 : std::min(still_frames_ + 1, kStillFrames);
-  if (moved) take_part(kButtonsPart);
+  if (frame.dlc != ButtonModule::kBytes || answers_.take(AnswerSet::kButtons) != AnswerSet::Answer::kInTime) return;
+  if (buttons_.take(frame)) take_part(AnswerSet::kButtons);
 }
 
-/// Whether this part was asked for in this period and had not come yet. A late one is only struck off.
-bool OdriveLink::is_answer(unsigned part) noexcept {
-  const bool asked = (outstanding_ & part) != 0;
-  outstanding_ &= ~part;
-  return asked && quiet_ == 0;
-}
-
-/// Samples are used only as a complete set of answers to the requests of one period.
-void OdriveLink::take_part(unsigned part) noexcept {
-  arrived_ |= part;
-  if (arrived_ != kAllParts) return;
+void OdriveLink::take_part(std::size_t part) noexcept {
+  if (!answers_.add(part)) return;
   rev_ = pending_rev_;
-  buttons_ = pending_buttons_;
-  valid_ = true;
-  age_ticks_ = 0;
+  buttons_.use();
 }
 
 rt::HandReading OdriveLink::reading() const noexcept {
   rt::HandReading r;
   r.bus_lost = was_lost_ || bus_.is_lost();
   r.foreign = foreign_;
-  r.valid = valid_;
-  r.age_ticks = age_ticks_;
+  r.valid = answers_.is_valid();
+  r.age_ticks = answers_.age_ticks();
   r.bus_load = load_.of_last_period();
-  r.enabled = valid_;
-  r.buttons_stuck = still_frames_ >= kStillFrames;
+  r.enabled = r.valid;
+  buttons_.tell(r);
   r.drive_fault = was_away_;
   for (std::size_t j = 0; j < rt::kJoints; ++j) {
     const Node& node = nodes_[j];
@@ -166,9 +141,6 @@ rt::HandReading OdriveLink::reading() const noexcept {
     r.enabled = r.enabled && node.is_on() && !node.was_off;
     r.drive_fault = r.drive_fault || node.heartbeat.error != 0 || node.had_error || node.tells_unasked;
   }
-  r.grip = (buttons_ & can::profile::kButtonGrip) != 0;
-  r.dead_man = (buttons_ & can::profile::kButtonDeadMan) != 0;
-  r.clutch = (buttons_ & can::profile::kButtonClutch) != 0;
   return r;
 }
 

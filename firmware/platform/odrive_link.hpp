@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 
+#include "firmware/platform/answer_set.hpp"
 #include "firmware/platform/bus_load.hpp"
 #include "firmware/platform/can_bus.hpp"
 #include "firmware/platform/odrive_frames.hpp"
@@ -17,12 +18,11 @@ class OdriveLink {
  public:
   OdriveLink(CanBus& bus, const device::Device& device) noexcept;
 
-  /// Begins a period: first reads late answers of the last period (as one period old), then asks all drives. While an
-  /// answer is outstanding it asks nobody, so that a late answer cannot be taken for the next one; after kQuiet such
-  /// periods the answer is lost. It also asks nobody while drives that must be off have not said so.
+  /// Begins a period: first reads late answers of the last period (as one period old), then asks all drives (see
+  /// AnswerSet). It asks nobody while drives that must be off have not said so.
   void request() noexcept;
   void drain() noexcept;
-  [[nodiscard]] bool is_settled() const noexcept { return age_ticks_ == 0 || bus_.is_lost(); }
+  [[nodiscard]] bool is_settled() const noexcept { return answers_.age_ticks() == 0 || bus_.is_lost(); }
   [[nodiscard]] rt::HandReading reading() const noexcept;
   std::array<std::int16_t, rt::kJoints> write(const rt::HandCommand& command) noexcept;
 
@@ -35,7 +35,6 @@ class OdriveLink {
     bool was_off = false;            ///< likewise
     bool answers = false;            ///< it has sent its position when asked
     bool tells_unasked = false;      ///< it has sent its position more often; in operation since the last write()
-    int owed = 0;                    ///< times that it was asked and has not answered
     bool is_new = false;             ///< its software is supported
     std::optional<float> target_Nm;  ///< the torque that it aims at, as told since forget_targets()
     [[nodiscard]] bool is_on() const noexcept { return heartbeat.state == odrive::kClosedLoop; }
@@ -43,7 +42,7 @@ class OdriveLink {
   [[nodiscard]] const std::array<Node, rt::kJoints>& nodes() const noexcept { return nodes_; }
   void forget_beats() noexcept;
   void forget_targets() noexcept;
-  [[nodiscard]] bool has_samples() const noexcept { return valid_; }
+  [[nodiscard]] bool has_samples() const noexcept { return answers_.is_valid(); }
   [[nodiscard]] rt::Foreign foreign() const noexcept { return foreign_; }
   /// Whether a drive's heartbeat has stayed away. The drives then stay off until the controller is started again.
   [[nodiscard]] bool was_away() const noexcept { return was_away_; }
@@ -53,20 +52,16 @@ class OdriveLink {
   bool send_limits(std::size_t joint) noexcept;
 
  private:
-  static constexpr int kMaxFrames = 64;    // read per call; a period on a 1 Mbit/s bus has fewer than 22
-  static constexpr int kQuiet = 2;         // periods in which nobody is asked after an answer stayed away
-  static constexpr int kNear = 10;         // periods after a frame of another controller, which may send more
-  static constexpr int kMargin = 3;        // periods of a silence beyond the longest watchdog that start-up accepts
-  static constexpr int kStillFrames = 10;  // frames of the buttons in a row without a change of their counter
-  static constexpr int kMissedBeats = 3;   // heartbeats of a drive that may be missing in a row
-  static constexpr unsigned kButtonsPart = 1U << rt::kJoints, kAllParts = 2 * kButtonsPart - 1;
+  static constexpr int kMaxFrames = 64;   // read per call; a period on a 1 Mbit/s bus has fewer than 22
+  static constexpr int kNear = 10;        // periods after a frame of another controller, which may send more
+  static constexpr int kMargin = 3;       // periods of a silence beyond the longest watchdog that start-up accepts
+  static constexpr int kMissedBeats = 3;  // heartbeats of a drive that may be missing in a row
 
   void take(const can::Frame& frame) noexcept;
   void take_beat(Node& node, const can::Frame& frame) noexcept;
   void take_buttons(const can::Frame& frame) noexcept;
-  [[nodiscard]] bool is_answer(unsigned part) noexcept;
   [[nodiscard]] bool said_off(const Node& node) const noexcept;
-  void take_part(unsigned part) noexcept;
+  void take_part(std::size_t part) noexcept;
   void ask_all() noexcept;
   void switch_off(bool stops) noexcept;
   void bring_up() noexcept;
@@ -79,22 +74,17 @@ class OdriveLink {
   float most_current_A_;
   std::array<Node, rt::kJoints> nodes_{};
   std::array<float, rt::kJoints> pending_rev_{}, rev_{};
-  unsigned outstanding_ = 0;  // parts that were asked for and have not come, one bit each
-  unsigned arrived_ = 0;      // parts of this period's set
-  int quiet_ = 0;             // periods since the last request
-  bool valid_ = false, was_lost_ = false, has_refused_ = false;
+  AnswerSet answers_;
+  ButtonModule buttons_;
+  bool was_lost_ = false, has_refused_ = false;
   bool was_away_ = false;  // a drive was silent for too long. It may have started anew, untested
   rt::Foreign foreign_ = rt::Foreign::kNone;
-  std::uint16_t buttons_ = 0, pending_buttons_ = 0;
-  bool has_word_ = false;  // a frame of the buttons has come
-  int still_frames_ = 0;
   int off_periods_ = 0;       // in a row, in which the drives should be off
   int silent_periods_ = 0;    // that are left of a silence in which the watchdog of a drive that does not obey runs out
   int foreign_periods_ = 0;   // in which a frame of another controller still counts as near
   bool may_ask_ = true;       // the drives may be on, or all have said that they are off
   int up_periods_ = 0;        // since the last round of commands to switch drives on
   bool is_prepared_ = false;  // the bus has taken this drive's mode and limits
-  std::int32_t age_ticks_ = 1;
   BusLoad load_;
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 // Bus time of ODrive drives on a classic CAN bus at 1 Mbit/s.
 
+#include "firmware/platform/answer_set.hpp"
 #include "firmware/platform/odrive_frames.hpp"
 #include "firmware/rt/bus_time.hpp"
 #include "protocol/can/bit_time.hpp"
@@ -13,9 +14,9 @@ namespace ligature::platform {
 [[nodiscard]] constexpr rt::BusTime odrive_time() noexcept {
   const auto ns = [](unsigned bits) { return std::chrono::nanoseconds(can::bits_to_ns(bits)); };
   const unsigned fewest = 3 * (can::min_frame_bits(0) + can::min_frame_bits(odrive::kWordBytes)) +
-                          can::min_frame_bits(odrive::kButtonsBytes);
+                          can::min_frame_bits(ButtonModule::kBytes);
   const unsigned most = 3 * (can::max_frame_bits(0) + can::max_frame_bits(odrive::kWordBytes)) +
-                        can::max_frame_bits(odrive::kButtonsBytes) + can::max_frame_bits(odrive::kWordBytes);
+                        can::max_frame_bits(ButtonModule::kBytes) + can::max_frame_bits(odrive::kWordBytes);
   return {ns(fewest), ns(most), ns(0)};
 }
 /// Longest time of the three torques on the bus.
