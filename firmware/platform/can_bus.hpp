@@ -9,7 +9,8 @@ namespace ligature::platform {
 
 enum class Receive : std::uint8_t { kFrame, kNothing, kLost };
 
-/// Never blocks or throws. A lost bus accepts no frames; if it can recover, it does so while receive() is called.
+/// Never blocks or throws. A lost bus accepts no frames; if it can recover, it does so while send() or receive()
+/// is called.
 class CanBus {
  public:
   virtual ~CanBus() = default;

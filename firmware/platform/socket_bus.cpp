@@ -65,7 +65,7 @@ std::string no_fd(int fd, const std::string& interface) {
   ifreq request{};
   interface.copy(request.ifr_name, IFNAMSIZ - 1);
   if (ioctl(fd, SIOCGIFMTU, &request) != 0) return std::strerror(errno);
-  if (request.ifr_mtu != CANFD_MTU)
+  if (request.ifr_mtu < static_cast<int>(CANFD_MTU))
     return "carries no CAN-FD frames, which these drives need; remedy: ip link set " + interface +
            " type can bitrate 1000000 dbitrate 5000000 fd on (a vcan: ip link set " + interface + " mtu 72)";
   if (setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &kOn, sizeof kOn) != 0) return std::strerror(errno);
@@ -125,7 +125,7 @@ bool SocketBus::note(int error) noexcept {
 }
 
 /// Marks the bus as lost. The socket reports "interface down" before frames that are still queued. These are dropped
-/// here, because the next frame received is taken as the sign that the interface is up again. After bus-off, frames are
+/// here, because the next frame received is taken as a sign that the interface is up again. After bus-off, frames are
 /// skipped until the error frame that reports the restart.
 void SocketBus::lose(Loss how) noexcept {
   loss_ = how;
@@ -149,11 +149,14 @@ bool SocketBus::take_error_frame(std::span<const std::uint8_t> packet) noexcept 
   return true;
 }
 
+/// An interface that was down is tried again: drives that speak only when asked would never send the first frame.
 bool SocketBus::send(const can::Frame& frame) noexcept {
-  if (is_lost()) return false;
+  if (is_lost() && loss_ != Loss::kDown) return false;
   const can::LocalPacket packet = can::to_packet(frame);
   const ssize_t sent = ::send(fd_, packet.data(), packet.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
-  return sent == static_cast<ssize_t>(packet.size()) || note(sent < 0 ? errno : EAGAIN);
+  if (sent != static_cast<ssize_t>(packet.size())) return note(sent < 0 ? errno : EAGAIN);
+  loss_ = Loss::kNone;
+  return true;
 }
 
 Receive SocketBus::receive(can::Frame& frame) noexcept {

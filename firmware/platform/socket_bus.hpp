@@ -16,8 +16,9 @@
 namespace ligature::platform {
 
 /// A lost bus of a simulated hand (URL `local:`) stays lost, because its peer is gone. A CAN interface may recover.
-/// After it was down, its first frame shows that it is up; after bus-off, its driver reports the restart. Frames queued
-/// before that are dropped. Force does not return by itself, because losing the bus is a latched fault.
+/// After it was down, the first frame that it delivers or takes shows that it is up; after bus-off, its driver reports
+/// the restart. Frames received before that are dropped. Force does not return by itself, because losing the bus is a
+/// latched fault.
 class SocketBus final : public CanBus {
  public:
   /// Takes ownership of the descriptor, which must be non-blocking.

@@ -218,6 +218,23 @@ TEST_F(Interface, ThatIsDownIsLostUntilItsFirstFrame) {
   }
 }
 
+/// Drives that speak only when asked send no first frame. So the controller's own frames must try the interface.
+TEST_F(Interface, ThatIsDownIsTriedByEachFrameSent) {
+  recv_error = send_error = ENETDOWN;
+  EXPECT_EQ(receive(), Receive::kLost);
+  for (int i = 0; i < 3; ++i) EXPECT_FALSE(bus->send(kFrame));
+  EXPECT_TRUE(bus->is_lost());
+  char packet[16];
+  EXPECT_LT(recv(peer, packet, sizeof packet, MSG_DONTWAIT), 0);
+  send_error = ENOBUFS;
+  EXPECT_FALSE(bus->send(kFrame));
+  EXPECT_TRUE(bus->is_lost()) << "a full queue says nothing of the interface";
+  send_error = 0;
+  EXPECT_TRUE(bus->send(kFrame));
+  EXPECT_FALSE(bus->is_lost());
+  EXPECT_EQ(recv(peer, packet, sizeof packet, MSG_DONTWAIT), 16);
+}
+
 /// The kernel reports the error first, and then delivers the frames that it had queued.
 TEST_F(Interface, WhatWasQueuedBeforeItWentDownIsNoSignOfLife) {
   for (int* const error : {&recv_error, &send_error}) {
