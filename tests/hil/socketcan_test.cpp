@@ -20,7 +20,9 @@ namespace {
 using platform::Receive;
 const can::Frame kFrame{0x181, 3, {1, 2, 3}};
 
-std::unique_ptr<platform::CanBus> opened() { return std::move(std::get<0>(platform::open_can_bus("socketcan:vcan0"))); }
+std::unique_ptr<platform::CanBus> opened(can::Network network = can::Network::kClassic) {
+  return std::move(std::get<0>(platform::open_can_bus("socketcan:vcan0", network)));
+}
 
 /// Another node on the bus, which can also send frames that our own code never sends.
 class Stranger {
@@ -30,6 +32,8 @@ class Stranger {
     address.can_family = AF_CAN;
     address.can_ifindex = static_cast<int>(if_nametoindex("vcan0"));
     EXPECT_EQ(bind(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+    constexpr int kOn = 1;
+    EXPECT_EQ(setsockopt(fd_, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &kOn, sizeof kOn), 0);
   }
   ~Stranger() { close(fd_); }
   void send(canid_t id, std::uint8_t length = 8) const {
@@ -38,11 +42,18 @@ class Stranger {
     f.can_dlc = length;
     EXPECT_EQ(write(fd_, &f, sizeof f), static_cast<ssize_t>(sizeof f));
   }
-  bool hears(canid_t id) const {
+  void send_fd(canid_t id, std::uint8_t length) const {
+    canfd_frame f{};
+    f.can_id = id;
+    f.len = length;
+    f.flags = CANFD_BRS;
+    EXPECT_EQ(write(fd_, &f, sizeof f), static_cast<ssize_t>(sizeof f));
+  }
+  bool hears(canid_t id, ssize_t bytes = CAN_MTU) const {
     pollfd p{fd_, POLLIN, 0};
-    can_frame f{};
-    while (poll(&p, 1, 1000) == 1 && read(fd_, &f, sizeof f) > 0)
-      if (f.can_id == id) return true;
+    canfd_frame f{};
+    for (ssize_t got = 0; poll(&p, 1, 1000) == 1 && (got = read(fd_, &f, sizeof f)) > 0;)
+      if (f.can_id == id && got == bytes) return true;
     return false;
   }
 
@@ -61,6 +72,16 @@ void set_up(bool up) {
   close(fd);
 }
 
+/// Only while the interface is down.
+void set_mtu(int mtu) {
+  const int fd = socket(PF_CAN, SOCK_RAW, CAN_RAW);
+  ifreq request{};
+  std::strncpy(request.ifr_name, "vcan0", IFNAMSIZ - 1);
+  request.ifr_mtu = mtu;
+  ASSERT_EQ(ioctl(fd, SIOCSIFMTU, &request), 0);
+  close(fd);
+}
+
 /// Waits up to 1 s for the next frame or the loss of the bus.
 Receive next(platform::CanBus& bus, can::Frame& frame) {
   pollfd p{bus.descriptor(), POLLIN, 0};
@@ -69,26 +90,54 @@ Receive next(platform::CanBus& bus, can::Frame& frame) {
 }
 
 TEST(SocketCan, CarriesFramesBothWaysAndDoesNotHearItself) {
-  const auto one = opened(), other = opened();
-  can::Frame frame;
-  EXPECT_TRUE(one->send(kFrame));
-  EXPECT_EQ(next(*other, frame), Receive::kFrame);
-  EXPECT_EQ(frame, kFrame);
-  EXPECT_EQ(one->receive(frame), Receive::kNothing);
-  EXPECT_TRUE(other->send(kFrame));
-  EXPECT_EQ(next(*one, frame), Receive::kFrame);
-}
-
-TEST(SocketCan, SkipsExtendedAndRemoteFrames) {
   const auto bus = opened();
   const Stranger stranger;
-  stranger.send(0x181 | CAN_EFF_FLAG);
-  stranger.send(0x181 | CAN_RTR_FLAG);
-  stranger.send(0x182, 5);
   can::Frame frame;
+  EXPECT_TRUE(bus->send(kFrame));
+  EXPECT_TRUE(stranger.hears(0x181));
+  EXPECT_EQ(bus->receive(frame), Receive::kNothing);
+  stranger.send(0x182, 5);
   ASSERT_EQ(next(*bus, frame), Receive::kFrame);
   EXPECT_EQ(frame.id, 0x182U);
   EXPECT_EQ(frame.dlc, 5);
+}
+
+TEST(SocketCan, TakesRemoteFramesAndSkipsExtendedAndFdFrames) {
+  const auto bus = opened();
+  const Stranger stranger;
+  stranger.send(0x181 | CAN_EFF_FLAG);
+  stranger.send_fd(0x181, 12);
+  stranger.send(0x182 | CAN_RTR_FLAG);
+  can::Frame frame;
+  ASSERT_EQ(next(*bus, frame), Receive::kFrame);
+  EXPECT_EQ(frame.id, can::kRemoteBit | 0x182U);
+}
+
+TEST(SocketCan, CarriesFdAndExtendedFramesIfTheDrivesNeedThem) {
+  const auto bus = opened(can::Network::kFd);
+  const Stranger stranger;
+  EXPECT_TRUE(bus->send({can::kExtendedBit | 0x8001, 12, {1, 2, 3}, can::Format::kFdFast}));
+  EXPECT_TRUE(stranger.hears(0x8001 | CAN_EFF_FLAG, CANFD_MTU));
+  stranger.send_fd(0x100, 24);
+  can::Frame frame;
+  ASSERT_EQ(next(*bus, frame), Receive::kFrame);
+  EXPECT_EQ(frame, (can::Frame{0x100, 24, {}, can::Format::kFdFast}));
+  stranger.send(0x400, 2);
+  ASSERT_EQ(next(*bus, frame), Receive::kFrame);
+  EXPECT_EQ(frame, (can::Frame{0x400, 2, {}})) << "a module may be a classic node";
+}
+
+TEST(SocketCan, AnInterfaceWithoutFdIsRefusedIfTheDrivesNeedIt) {
+  set_up(false);
+  set_mtu(CAN_MTU);
+  set_up(true);
+  const auto refused = platform::open_can_bus("socketcan:vcan0", can::Network::kFd);
+  const auto* error = std::get_if<platform::OpenError>(&refused);
+  EXPECT_TRUE(error != nullptr && error->text.find("carries no CAN-FD frames") != std::string::npos);
+  EXPECT_TRUE(opened());
+  set_up(false);
+  set_mtu(CANFD_MTU);
+  set_up(true);
 }
 
 TEST(SocketCan, BusOffIsALossUntilTheDriverWasRestarted) {
@@ -123,19 +172,26 @@ TEST(SocketCan, OtherErrorFramesAreNoLoss) {
 }
 
 TEST(SocketCan, AnInterfaceThatWasDownComesBackWithItsFirstFrame) {
-  const auto bus = opened();
-  can::Frame frame;
-  set_up(false);
-  EXPECT_EQ(next(*bus, frame), Receive::kLost);
-  EXPECT_TRUE(bus->is_lost());
-  EXPECT_FALSE(bus->send(kFrame));
-  set_up(true);
-  EXPECT_EQ(bus->receive(frame), Receive::kLost) << "up is not yet somebody there";
-  const Stranger stranger;
-  stranger.send(0x701);
-  EXPECT_EQ(next(*bus, frame), Receive::kFrame);
-  EXPECT_FALSE(bus->is_lost());
-  EXPECT_TRUE(bus->send(kFrame));
+  for (const bool is_sent : {false, true}) {
+    const auto bus = opened();
+    can::Frame frame;
+    set_up(false);
+    EXPECT_EQ(next(*bus, frame), Receive::kLost);
+    EXPECT_TRUE(bus->is_lost());
+    EXPECT_FALSE(bus->send(kFrame));
+    set_up(true);
+    EXPECT_EQ(bus->receive(frame), Receive::kLost) << "up is not yet somebody there";
+    const Stranger stranger;
+    if (is_sent) {
+      EXPECT_TRUE(bus->send(kFrame));
+      EXPECT_TRUE(stranger.hears(0x181));
+    } else {
+      stranger.send(0x701);
+      EXPECT_EQ(next(*bus, frame), Receive::kFrame);
+    }
+    EXPECT_FALSE(bus->is_lost());
+    EXPECT_TRUE(bus->send(kFrame));
+  }
 }
 
 TEST(SocketCan, AnInterfaceThatIsDownCannotBeOpenedForGoodOrIsLostAtOnce) {

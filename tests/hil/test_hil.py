@@ -140,7 +140,7 @@ class Machine(Guest):
         folder, code = guest("machine", "--cpus", "2", "--isolate")
         self.assertEqual(code, 0)
         ran = (folder / "socketcan.log").read_text()
-        self.assertIn("[  PASSED  ] 7 tests", ran)
+        self.assertIn("[  PASSED  ] 9 tests", ran)
         rows = (folder / "doctor.log").read_text()
         for row in ("OK    kernel .*PREEMPT_RT", "OK    own core .*core 1", "OK    timer ticks .*core 1", "OK    RCU callbacks",
                     "OK    real-time priority", "OK    locked memory", "OK    LCM", "OK    CAN +vcan0: up", "OK    CAN bit rate .*virtual",
