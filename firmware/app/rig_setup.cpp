@@ -135,17 +135,20 @@ std::variant<Buses, Refusal> open_buses(const RunOptions& options, const device:
 std::optional<Refusal> configure(const Buses& buses) {
   constexpr std::array kNames{"left", "right"};
   const std::array bus{buses.left.get(), buses.right.get()};
-  const auto refusal = [&](std::size_t h, const std::string& why) {
-    return Refusal{3, std::string(kNames[h]) + " hand: " + why};
-  };
+  const auto told = [&](std::size_t h, const std::string& why) { return std::string(kNames[h]) + " hand: " + why; };
   for (std::size_t h = 0; h < rt::kHands; ++h) {
     // Waits on this hand's bus only: unread frames of the other bus would end the wait too early
     platform::PollWait alone(*bus[h], *bus[h]);
-    if (const auto why = buses.drives[h]->other_controller(alone)) return refusal(h, *why);
+    if (const auto why = buses.drives[h]->other_controller(alone)) return Refusal{3, told(h, *why)};
   }
   platform::PollWait wait(*buses.left, *buses.right);
   for (std::size_t h = 0; h < rt::kHands; ++h) {
-    if (const auto why = buses.drives[h]->configure(wait)) return refusal(h, *why);
+    const auto why = buses.drives[h]->configure(wait);
+    if (!why) continue;
+    const std::size_t other = 1 - h;
+    platform::PollWait alone(*bus[other], *bus[other]);
+    const auto still_on = buses.drives[other]->release(alone);
+    return Refusal{3, told(h, *why) + (still_on ? "; " + told(other, *still_on) : "")};
   }
   return std::nullopt;
 }

@@ -52,8 +52,10 @@ using Pause = std::function<bool()>;
 [[nodiscard]] std::variant<Buses, Refusal> open_buses(const RunOptions& options, const device::Device& device,
                                                       const Pause& pause);
 
-/// Checks that no other controller commands the drives, then brings all six drives to the NMT state pre-operational.
-/// @return why it failed, if so.
+/// Checks that no other controller commands the drives of either hand; until then nothing is sent. Then sets all six
+/// drives up. If one hand's are refused, those of the other hand are switched off too: they may act from an earlier
+/// run.
+/// @return why it failed, if so, and which drives do not say that they are off.
 [[nodiscard]] std::optional<Refusal> configure(const Buses& buses);
 
 }  // namespace ligature::app
