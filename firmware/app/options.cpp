@@ -91,7 +91,7 @@ void add_run(CLI::App& run, RunOptions& o) {
   run.add_flag("--override-passivity", o.override_passivity,
                "take a coupling stiffer than the device can render stably (docs/haptics.md)");
   run.add_flag("--accept-no-drive-watchdog", o.accept_no_drive_watchdog,
-               "run drives that keep their last torque if this program dies (docs/drives.md)");
+               "run drives that may keep a torque if this program dies (docs/drives.md)");
   run.add_flag("--arm", o.arm, "arm at start, as the local operator; else wait for the command");
   run.add_option("--duration", o.duration_s, "end after so many seconds")->check(within(0.001, 1e6));
   run.add_option("--lcm-url", o.lcm_url, "LCM provider")->capture_default_str();

@@ -62,11 +62,11 @@ bool is_same_bus(const std::string& left, const std::string& right) {
   return path(left) == path(right);
 }
 
-std::variant<std::unique_ptr<platform::CanBus>, Refusal> open_patiently(const std::string& url, double wait_s,
-                                                                        const Pause& pause) {
+std::variant<std::unique_ptr<platform::CanBus>, Refusal> open_patiently(const std::string& url, can::Network network,
+                                                                        double wait_s, const Pause& pause) {
   const auto give_up = std::chrono::steady_clock::now() + std::chrono::duration<double>(wait_s);
   for (;;) {
-    auto opened = platform::open_can_bus(url);
+    auto opened = platform::open_can_bus(url, network);
     if (auto* bus = std::get_if<std::unique_ptr<platform::CanBus>>(&opened)) return std::move(*bus);
     const auto& error = std::get<platform::OpenError>(opened);
     if (error.kind == platform::OpenFailure::kUsage) return Refusal{2, error.text};
@@ -101,8 +101,9 @@ std::variant<Plan, Refusal> make_plan(const RunOptions& options) {
   }
   if (!options.accept_no_drive_watchdog && !platform::have_watchdog(device))
     return Refusal{2, (options.device.empty() ? device.name : options.device) +
-                          ": the drives have no watchdog: if this program dies, the last torque acts on; allowed only "
-                          "with --accept-no-drive-watchdog and an emergency stop in reach (docs/drives.md)"};
+                          ": the drives have no watchdog that is known to remove the torque if this program dies; "
+                          "allowed only with --accept-no-drive-watchdog and an emergency stop in reach "
+                          "(docs/drives.md)"};
   const auto text = scene::read_text(options.scene, scene::kMostScene_bytes);
   if (const auto* error = std::get_if<scene::Error>(&text)) return Refusal{2, error->text};
   auto plan = plan_of(options.scene, std::get<std::string>(text), launch_overrides(options), device);
@@ -123,7 +124,7 @@ void give_work(Plan& plan, long instructions) {
 std::variant<Buses, Refusal> open_buses(const RunOptions& options, const device::Device& device, const Pause& pause) {
   Buses buses;
   for (auto [url, bus] : {std::pair{&options.left, &buses.left}, std::pair{&options.right, &buses.right}}) {
-    auto opened = open_patiently(*url, options.wait_s, pause);
+    auto opened = open_patiently(*url, platform::network_of(device), options.wait_s, pause);
     if (auto* refusal = std::get_if<Refusal>(&opened)) return *refusal;
     *bus = std::move(std::get<0>(opened));
   }

@@ -58,7 +58,7 @@ class TorqueWatch {
   [[nodiscard]] bool is_strange(const rt::HandReading& reading) const noexcept {
     bool strange = reading.torque_astray;
     for (std::size_t j = 0; j < rt::kJoints; ++j) {
-      const double told_Nm = reading.torque_Nm[j];
+      const double told_Nm = std::isfinite(reading.measured_Nm[j]) ? reading.measured_Nm[j] : reading.torque_Nm[j];
       if (!std::isfinite(told_Nm)) continue;  // this joint's message has no torque
       Range may;
       for (const auto& block : blocks_) {

@@ -16,9 +16,13 @@ namespace ligature::platform {
 
 /// The answers to the requests of one period: one part for each drive, and one for the button module. Only a complete
 /// set is a sample. After an answer stayed away nobody is asked until it has come, or for kQuiet periods; so a late
-/// answer cannot be taken for the answer to the next request.
+/// answer cannot be taken for the answer to the next request. One that is later still could be. If the answers name
+/// their requests, it is not: then only as many requests are open as have different names.
 class AnswerSet {
  public:
+  /// @param names by which the answers tell successive requests apart; 0: they do not
+  explicit AnswerSet(int names = 0) noexcept : names_(names) {}
+
   static constexpr std::size_t kButtons = rt::kJoints, kParts = rt::kJoints + 1;
   enum class Answer : std::uint8_t {
     kInTime,
@@ -30,8 +34,10 @@ class AnswerSet {
   bool begin_period(bool may_ask) noexcept {
     arrived_ = 0;
     if (age_ticks_ < std::numeric_limits<std::int32_t>::max()) ++age_ticks_;
-    if (!may_ask || (outstanding_ != 0 && quiet_ < kQuiet)) {
-      quiet_ = std::min(quiet_ + 1, kQuiet);
+    const bool are_used_up = names_ > 0 && std::ranges::max(owed_) >= names_;
+    const int quiet = are_used_up ? kLost : outstanding_ != 0 ? kQuiet : 0;
+    if (!may_ask || quiet_ < quiet) {
+      quiet_ = std::min(quiet_ + 1, kLost);
       return false;
     }
     quiet_ = 0;
@@ -40,7 +46,7 @@ class AnswerSet {
   }
   void asked(std::size_t part) noexcept {
     outstanding_ |= 1U << part;
-    owed_[part] = std::min(owed_[part] + 1, kMany);
+    owed_[part] = std::min(owed_[part] + 1, kMostOwed);
   }
   /// Strikes an answer off the list. A late one is no part of a set.
   [[nodiscard]] Answer take(std::size_t part) noexcept {
@@ -50,9 +56,11 @@ class AnswerSet {
     if (!was_owed) return Answer::kUnasked;
     return in_time ? Answer::kInTime : Answer::kLate;
   }
+  /// An answer in time, with the name of the last request. Answers keep their order, so older ones are lost.
   /// @return whether the set is complete by this part
   bool add(std::size_t part) noexcept {
     arrived_ |= 1U << part;
+    if (names_ > 0) owed_[part] = 0;
     if (arrived_ != kAll) return false;
     valid_ = true;
     age_ticks_ = 0;
@@ -63,8 +71,10 @@ class AnswerSet {
 
  private:
   static constexpr int kQuiet = 2;
-  static constexpr int kMany = std::numeric_limits<int>::max() - 1;
+  static constexpr int kLost = 20;     // periods after which an answer is lost: its sample would be too old (fault 11)
+  static constexpr int kMostOwed = 8;  // so that few answers to nothing are excused after a drive was away
   static constexpr unsigned kAll = (1U << kParts) - 1U;
+  int names_;
   unsigned outstanding_ = 0;  // parts that were asked for and have not come, one bit each
   unsigned arrived_ = 0;      // parts of this period's set
   int quiet_ = 0;             // periods since the last request
@@ -89,6 +99,8 @@ class ButtonModule {
     still_frames_ = moved ? 0 : std::min(still_frames_ + 1, kStillFrames);
     return moved;
   }
+  /// Counter of the newest frame.
+  [[nodiscard]] std::uint8_t life() const noexcept { return can::profile::life_of(pending_); }
   void use() noexcept { word_ = pending_; }  ///< the set is complete
   void tell(rt::HandReading& r) const noexcept {
     r.buttons_stuck = still_frames_ >= kStillFrames;

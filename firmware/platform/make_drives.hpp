@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "firmware/platform/hand_drives.hpp"
+#include "protocol/can/local_wire.hpp"
 #include "protocol/device/device.hpp"
 
 namespace ligature::platform {
@@ -22,7 +23,10 @@ namespace ligature::platform {
 /// @param watchdog_ms as for make_drives()
 [[nodiscard]] std::vector<std::string> lacks_of_record(const device::Device& device, int watchdog_ms);
 
-/// Whether the drives remove their torque by themselves when the controller falls silent.
+/// What kind of bus these drives need.
+[[nodiscard]] can::Network network_of(const device::Device& device) noexcept;
+
+/// Whether it is known that the drives end the last torque by themselves when the controller falls silent.
 [[nodiscard]] bool have_watchdog(const device::Device& device) noexcept;
 
 }  // namespace ligature::platform

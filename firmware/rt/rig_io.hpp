@@ -27,6 +27,8 @@ struct HandReading {
   std::array<double, kJoints> q_rad{};  ///< waist, shoulder, forearm (absolute)
   /// Torque made in the period before the sample; kNotTold for a joint whose message has no torque.
   std::array<double, kJoints> torque_Nm{kNotTold, kNotTold, kNotTold};
+  /// Torque that the drive measures, with noise. It only shows whether a torque is one that nobody commanded.
+  std::array<double, kJoints> measured_Nm{kNotTold, kNotTold, kNotTold};
   std::array<bool, kJoints> torque_limited{};  ///< the drive makes less torque than commanded
   /// Number of SYNCs (counted by the drive) for which the drive has repeated an older torque because RPDOs were lost;
   /// 0: none, or the drive does not report it.

@@ -45,6 +45,7 @@ struct Device {
   double delay_s = 0.0;                   ///< from a position sample to the effect of the torque computed from it
   Cia402Profile cia402{};                 ///< what CiA 402 drives offer on the bus
   std::optional<OdriveProfile> odrive{};  ///< set: the drives are ODrives, and cia402 means nothing
+  bool moteus = false;                    ///< the drives are moteus controllers, and cia402 means nothing
 
   // Passive dynamics of the device when it is off, at the tip in the home pose.
   double apparent_mass_kg = 0.0;

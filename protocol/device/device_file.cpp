@@ -1,5 +1,6 @@
 #include "protocol/device/device_file.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -105,15 +106,19 @@ void read_limits(Marked t, Device& d) {
   t.number("hand_acceleration_m_per_s2", d.hand_acceleration_m_per_s2, kPositive);
 }
 
-/// An ODrive tells its motor's angle, after power-on within one turn. So the motor must turn the joint without a gear,
-/// and less than once over the whole range. The Omni's third drive sits in the base: its angle is the sum of two.
+/// An ODrive or moteus tells its motor's angle, after power-on within one turn. So the motor must turn the joint
+/// without a gear, and less than once over the whole range. The Omni's third drive sits in the base: its angle is the
+/// sum of two. After power-on a moteus tells an angle of less than half a turn to either side.
 void check_turns(StrictTable& geometry, const Device& d) {
-  if (!d.odrive) return;
+  if (!d.odrive && !d.moteus) return;
   for (std::size_t i = 0; i < 3; ++i) {
-    double range_rad = d.joint_max_rad[i] - d.joint_min_rad[i];
-    if (i == 2 && d.kinematics == Kinematics::kOmniSerial) range_rad += d.joint_max_rad[1] - d.joint_min_rad[1];
-    if (range_rad >= 2.0 * std::numbers::pi)
-      geometry.refuse("joint_max_rad", "less than one turn of each motor: an ODrive cannot tell turns apart");
+    const bool is_sum = i == 2 && d.kinematics == Kinematics::kOmniSerial;
+    const double low_rad = d.joint_min_rad[i] + (is_sum ? d.joint_min_rad[1] : 0.0);
+    const double high_rad = d.joint_max_rad[i] + (is_sum ? d.joint_max_rad[1] : 0.0);
+    if (high_rad - low_rad >= 2.0 * std::numbers::pi)
+      geometry.refuse("joint_max_rad", "less than one turn of each motor: these drives cannot tell turns apart");
+    else if (d.moteus && std::max(-low_rad, high_rad) >= std::numbers::pi)
+      geometry.refuse("joint_max_rad", "with [moteus] less than half a turn of each motor to either side of 0");
   }
 }
 
@@ -148,9 +153,19 @@ void read_record(StrictTable& top, DeviceFile& out) {
     top.table("odrive", [&](StrictTable& p) {
       read_odrive(p, d.odrive.emplace());
       if (top.has("cia402")) p.refuse("source", "one of the tables [cia402] and [odrive]");
-      if (!p.failed() && d.gear != 1.0)
-        t.refuse("gear", "1 with [odrive]: with a gear the angle after power-on is ambiguous (docs/drives.md)");
     });
+    top.table("moteus", [&](StrictTable& p) {
+      Source source = Source::kAssumed;
+      p.require("source");
+      p.choice("source", source, kSourceNames);
+      d.moteus = true;
+      t.require("torque_tolerance_permille");  // the torque is measured: the default is for torques told exactly
+      if (top.has("cia402") || top.has("odrive"))
+        p.refuse("source", "one of the tables [cia402], [odrive] and [moteus]");
+    });
+    if (!t.failed() && (d.odrive || d.moteus) && d.gear != 1.0)
+      t.refuse("gear",
+               "1 with [odrive] or [moteus]: with a gear the angle after power-on is ambiguous (docs/drives.md)");
     if (!t.failed() && d.motor_counts % d.cia402.counts_unit != 0)
       t.refuse("motor_counts", "a multiple of cia402.counts_unit");
     if (!t.failed() && !is_told_exactly(d)) t.refuse("rated_torque_Nm", "a multiple of cia402.rated_torque_unit_Nm");

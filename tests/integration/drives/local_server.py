@@ -6,6 +6,8 @@ import socket
 import struct
 
 IMAGE = struct.Struct("=IB3x8s")  # layout of Linux' struct can_frame
+FD_IMAGE = struct.Struct("=IBB2x64s")  # and of its struct canfd_frame
+SWITCHES_RATE = 1
 
 
 class LocalServer:
@@ -14,15 +16,22 @@ class LocalServer:
         self.listener.bind(path)
         self.listener.listen(1)
         self.path, self.controller = path, None
+        self.data, self.is_fast_fd = b"", False  # of the last frame
 
     def close(self):
         os.unlink(self.path)
 
     def send(self, identifier, data):
+        self.put(IMAGE.pack(identifier, len(data), bytes(data).ljust(8, b"\0")))
+
+    def send_fd(self, identifier, data):
+        self.put(FD_IMAGE.pack(identifier, len(data), SWITCHES_RATE, bytes(data).ljust(64, b"\0")))
+
+    def put(self, packet):
         if self.controller is None:
             return
         try:
-            self.controller.send(IMAGE.pack(identifier, len(data), bytes(data).ljust(8, b"\0")))
+            self.controller.send(packet)
         except OSError:
             pass  # the controller is gone: nobody hears this frame
 
@@ -37,12 +46,14 @@ class LocalServer:
             self.controller = self.listener.accept()[0]
             return None
         try:
-            packet = self.controller.recv(IMAGE.size)
+            packet = self.controller.recv(FD_IMAGE.size)
         except OSError:
             packet = b""
         if not packet:  # the controller is dead; a real bus would just be silent
             self.controller.close()
             self.controller = None
             return None
-        identifier, length, data = IMAGE.unpack(packet)
-        return identifier, data[:length]
+        is_fd = len(packet) == FD_IMAGE.size
+        identifier, length, *flags, data = (FD_IMAGE if is_fd else IMAGE).unpack(packet)
+        self.data, self.is_fast_fd = data[:length], flags == [SWITCHES_RATE]
+        return identifier, self.data

@@ -271,6 +271,51 @@ class Odrive(Matrix, Rig):
         self.assertIn("--accept-no-drive-watchdog", line)
 
 
+class Moteus(Matrix, Rig):
+    """Drives on CAN-FD, with frames as the maker's package makes and reads them. Their watchdog damps."""
+
+    stack, record, replaced, accept = "moteus_nodes", "moteus.toml", (), ("--accept-no-drive-watchdog",)
+    lacks = ("what a drive does after its watchdog is not checked", "calibration and position offset cannot be compared")
+    most_ticks_by_fault = 20  # the next answer, and a Python drive that is late
+
+    def judge_death(self, ms, torque):
+        damps, _ = self.left.wait("damps")
+        self.assertGreaterEqual(int(damps[2]), WATCHDOG_MS, "the time that the firmware told the drives")
+        place = len(self.left.lines)
+        firmware = self.firmware(self.device(), *self.accept)
+        self.left.why = lambda: firmware.communicate()[1] if firmware.poll() is not None else ""
+        self.left.wait("enabled", place)  # a drive that damps switches on only after a stop
+
+    def test_an_unchecked_watchdog_needs_a_word(self):
+        code, line = self.refused(self.device())
+        self.assertEqual(code, 2)
+        self.assertIn("--accept-no-drive-watchdog", line)
+
+    def refused_with(self, *changes):
+        self.start_hands(changes=changes)
+        process = self.firmware(self.device(), *self.accept)
+        _, errors = process.communicate(timeout=BOUND_S)
+        self.assertEqual(process.returncode, 3, errors)
+        self.assertFalse([l for l in self.left.lines if l[0] == "felt"])
+        return errors
+
+    def test_a_drive_without_watchdog_is_refused(self):
+        errors = self.refused_with("0:0=1")
+        self.assertIn("left hand: node 1 (mode 10, fault 0): no watchdog of 2000 ms", errors)
+        self.assertNotIn("cut its power", errors)
+
+    def test_drives_that_keep_their_gains_are_refused(self):
+        self.assertIn("does not switch on and stay so, with the settings that it is told", self.refused_with("0:2=1"))
+
+    def test_buttons_without_sign_of_life_are_refused(self):
+        self.assertIn("left hand: the button module does not answer", self.refused_with("0:1=1"))
+
+    def test_a_drive_that_stays_in_its_stored_mode_is_refused_and_named(self):
+        errors = self.refused_with("0:3=6")
+        self.assertIn("left hand: node 3 (mode 6, fault 0): does not say that it has stopped", errors)
+        self.assertIn("node 3 (mode 6, fault 0): does not say that it is off: cut its power", errors)
+
+
 class Doctor(unittest.TestCase):
     def test_doctor_says_what_the_drives_of_a_record_lack(self):
         def doctor(record):

@@ -121,6 +121,31 @@ TEST(OdriveRecord, IsOneOfTheTwoKindsOfDrive) {
             std::string::npos);
 }
 
+TEST(MoteusRecord, HasOneKindOfDriveAndNoGear) {
+  const std::string good = shipped("moteus.toml");
+  const auto parsed = parse_device(good, "moteus.toml");
+  EXPECT_TRUE(std::get<DeviceFile>(parsed).device.moteus);
+  EXPECT_FALSE(std::get<DeviceFile>(parsed).device.odrive);
+  const auto refusal = [&](const std::string& old, const std::string& now) {
+    std::string text = good;
+    text.replace(text.find(old), old.size(), now);
+    const auto other = parse_device(text, "d.toml");
+    return std::holds_alternative<DeviceFile>(other) ? "" : std::get<scene::Error>(other).text;
+  };
+  EXPECT_NE(refusal("[feel]", "[odrive]\nsource = \"assumed\"\ntorque_constant_Nm_per_A = 0.1\n[feel]").find("one of"),
+            std::string::npos);
+  EXPECT_NE(refusal("[feel]", "[cia402]\nsource = \"assumed\"\n[feel]").find("d.toml:"), std::string::npos);
+  EXPECT_NE(refusal("[0.98, 1.80, 1.25]", "[0.98, 1.80, 1.40]").find("less than half a turn"), std::string::npos)
+      << "the third motor turns from -0.91 to 3.20";
+  EXPECT_NE(refusal("gear = {value = 1.0", "gear = {value = 4.0").find("1 with [odrive] or [moteus]"),
+            std::string::npos);
+  EXPECT_NE(refusal("[0.98, 1.80, 1.25]", "[5.31, 1.80, 1.25]").find("less than one turn"), std::string::npos);
+  EXPECT_NE(
+      refusal("torque_tolerance_permille =", "# torque_tolerance_permille =").find("'torque_tolerance_permille' is"),
+      std::string::npos)
+      << "the torque is measured, and the default is for drives that tell it exactly";
+}
+
 /// An ODrive tells an angle within one turn of its motor.
 TEST(OdriveRecord, RefusesWhatMakesTheAngleAmbiguous) {
   const std::string good = shipped("odrive.toml");

@@ -32,7 +32,8 @@ std::string refusal(const std::string& text) {
 }
 
 TEST(DeviceFile, ShippedRecordsLoadAndMarkEveryValue) {
-  for (const char* file : {"omni.toml", "cartesian.toml", "epos4.toml", "generic-cia402.toml", "odrive.toml"}) {
+  for (const char* file :
+       {"omni.toml", "cartesian.toml", "epos4.toml", "generic-cia402.toml", "odrive.toml", "moteus.toml"}) {
     const auto loaded = load_device_file(kFolder + file);
     ASSERT_TRUE(std::holds_alternative<DeviceFile>(loaded)) << std::get<scene::Error>(loaded).text;
     const auto& sources = std::get<DeviceFile>(loaded).sources;

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdio>
 
 #include "firmware/platform/make_drives.hpp"
+#include "firmware/platform/moteus_frames.hpp"
 #include "firmware/platform/odrive_frames.hpp"
 #include "protocol/can/cia402.hpp"
 #include "protocol/can/codec.hpp"
@@ -58,7 +60,9 @@ class BusOfARecord {
         if (!write_at && drives_->is_settled()) write_at = now_ + kComputing;
         if (has_written || !write_at || now_ < *write_at) continue;
         has_written = true;
-        drives_->write({{torque(), torque(), torque()}, rt::DriveRequest::kOperate});
+        const bool switches_on = device_.moteus && k < 30;
+        drives_->write(
+            {{torque(), torque(), torque()}, switches_on ? rt::DriveRequest::kEnable : rt::DriveRequest::kOperate});
       }
       // The first frame of ODrives' buttons is no sample: there is no counter before it
       figures_.periods_without_set += has_written || k == 0 ? 0 : 1;
@@ -72,6 +76,7 @@ class BusOfARecord {
 
   void hear(const sim::Transmission& heard) {
     if (heard.sender != kController) return bus_.inbox.push_back(heard.frame);
+    if (device_.moteus) return hear_as_moteus(heard);
     device_.odrive ? hear_as_odrive(heard) : hear_as_cia402(heard);
   }
 
@@ -109,6 +114,31 @@ class BusOfARecord {
     }
   }
 
+  /// The same; the drives tell back what they were commanded.
+  void hear_as_moteus(const sim::Transmission& heard) {
+    const std::size_t joint = (heard.frame.id & 3U) - 1;
+    if (heard.frame.dlc == moteus::kTorqueBytes) {
+      is_on_ = true;
+      return note(heard.end - sampled_[joint]);
+    }
+    if (heard.frame.dlc != moteus::kQueryBytes) return;  // a stop
+    sampled_[joint] = heard.end;
+    can::Frame f{static_cast<std::uint32_t>(joint + 1) << 8U,
+                 24,
+                 {0x21, 0x00, 0, 0x2D, 0x01, 0, 0, 0, 0x3F, 0x2D, 0x03},
+                 can::Format::kFdFast};
+    f.data[2] = is_on_ ? 10 : 0;
+    for (const std::size_t at : {5U, 6U, 7U, 11U, 12U, 13U})
+      f.data[at] = static_cast<std::uint8_t>(random_.any(0, 255));
+    f.data[15] = 0x21, f.data[16] = 0x0F, f.data[18] = 0x2D;
+    const std::uint8_t reg = f.data[19] = heard.frame.data[9];
+    const float value = reg == 0x0C ? 1.0F : reg == 0x25 ? 0.9F : reg == 0x27 ? 0.02F : 0.0F;
+    for (unsigned i = 0; i < 4; ++i)
+      f.data[20 + i] = static_cast<std::uint8_t>(std::bit_cast<std::uint32_t>(value) >> (8U * i));
+    wire_.submit(f, static_cast<int>(joint) + 1, heard.end);
+    if (joint == 2) wire_.submit({moteus::kButtonsId, 2, {2, reg}}, kButtons, heard.end);
+  }
+
   /// Heartbeats of ODrives, at phases of their own.
   void send_by_timers(int k) {
     if (!device_.odrive) return;
@@ -133,6 +163,7 @@ class BusOfARecord {
   test::Random random_{71};
   std::array<Time, 3> sampled_{};
   std::uint8_t life_ = 0;
+  bool is_on_ = false;
   int torques_ = 0;  // frames with a torque since the last SYNC
   Figures figures_;
 };
@@ -147,7 +178,8 @@ TEST(DriveBus, LoadAndDelayOfEachRecord) {
                       {"epos4.toml", 0.77, microseconds(990), microseconds(1010)},
                       {"generic-cia402.toml", 0.79, microseconds(990), microseconds(1010)},
                       {"inverse3.toml", 0.70, microseconds(990), microseconds(1010)},
-                      {"odrive.toml", 0.88, microseconds(420), microseconds(1000)}};
+                      {"odrive.toml", 0.88, microseconds(420), microseconds(1000)},
+                      {"moteus.toml", 0.88, microseconds(300), microseconds(900)}};
   for (const Row& row : rows) {
     const Figures f = BusOfARecord(row.file).run(2000);
     const auto us = [](Time t) { return static_cast<long>(t.count() / 1000); };

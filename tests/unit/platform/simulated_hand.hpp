@@ -19,9 +19,10 @@ struct Buttons {
   std::uint32_t request = 0, id = 0;
   std::uint8_t bits = 2, life = 0;
   bool answers = true, counts = true;
+  bool echoes = false;  // its counter is the register that was asked for
   void take(const can::Frame& frame, std::deque<can::Frame>& inbox) {
     if (!answers || frame.id != request) return;
-    life = static_cast<std::uint8_t>(life + (counts ? 1 : 0));
+    if (counts) life = static_cast<std::uint8_t>(echoes ? frame.data[9] : life + 1);
     inbox.push_back({id, 2, {bits, life}});
   }
 };

@@ -20,7 +20,9 @@
 #include <utility>
 
 #include "firmware/platform/bus_wait.hpp"
+#include "firmware/platform/moteus_link.hpp"
 #include "protocol/can/local_wire.hpp"
+#include "protocol/device/device_file.hpp"
 #include "tests/support/temp_folder.hpp"
 
 namespace {
@@ -233,6 +235,27 @@ TEST_F(Interface, ThatIsDownIsTriedByEachFrameSent) {
   EXPECT_TRUE(bus->send(kFrame));
   EXPECT_FALSE(bus->is_lost());
   EXPECT_EQ(recv(peer, packet, sizeof packet, MSG_DONTWAIT), 16);
+}
+
+/// moteus drives must get their stops after the interface was down, although they have said nothing since.
+TEST_F(Interface, SilentDrivesGetTheirStopsWhenItIsUpAgain) {
+  const auto device =
+      std::get<device::Device>(device::load_device(std::string(LIGATURE_SOURCE_DIR) + "/scenes/devices/moteus.toml"));
+  MoteusLink link(*bus, device, 20);
+  recv_error = send_error = ENETDOWN;
+  for (int k = 0; k < 3; ++k) {
+    link.request();
+    link.drain();
+    EXPECT_TRUE(link.reading().bus_lost);
+    link.write({{}, rt::DriveRequest::kHold});
+  }
+  send_error = 0;
+  link.write({{}, rt::DriveRequest::kHold});
+  for (unsigned node = 1; node <= 3; ++node) {
+    can::LocalPacket packet(can::kLocalFdPacketBytes);
+    ASSERT_EQ(recv(peer, packet.data(), packet.size(), MSG_DONTWAIT), 72);
+    EXPECT_EQ(can::from_packet(packet, can::Network::kFd), moteus::stop(node));
+  }
 }
 
 /// The kernel reports the error first, and then delivers the frames that it had queued.
