@@ -46,11 +46,11 @@ can::cia402::State HandLink::Node::state() const noexcept {
 
 void HandLink::send_sync() noexcept {
   drain();
-  load_.begin_period();
+  bus_.begin_period();
   arrived_ = 0;
   if (age_ticks_ < std::numeric_limits<std::int32_t>::max()) ++age_ticks_;
-  send(can::sync_frame());
-  if (stops_) send(can::encode_nmt(can::NmtCommand::kStop));
+  bus_.send(can::sync_frame());
+  if (stops_) bus_.send(can::encode_nmt(can::NmtCommand::kStop));
 }
 
 /// Whether to send a heartbeat, which tells the drives that they may go on. No heartbeat is sent while the drives must
@@ -75,27 +75,15 @@ bool HandLink::are_off() const noexcept {
 /// So it is sent after the drives have answered, when the bus is free.
 void HandLink::beat() noexcept {
   if (--periods_to_heartbeat_ >= 0) return;
-  send(can::encode(can::Heartbeat{can::kMasterNode, can::NmtState::kOperational}));
+  bus_.send(can::encode(can::Heartbeat{can::kMasterNode, can::NmtState::kOperational}));
   periods_to_heartbeat_ = heartbeat_periods_ - 1;
 }
 
 void HandLink::drain() noexcept {
-  can::Frame frame;
-  for (int i = 0; i < kMaxFrames && bus_.receive(frame) == Receive::kFrame; ++i) take(frame);
-  was_lost_ = was_lost_ || bus_.is_lost();
-}
-
-bool HandLink::send(const can::Frame& frame) noexcept {
-  if (!bus_.send(frame)) {
-    was_lost_ = was_lost_ || bus_.is_lost();
-    return false;
-  }
-  load_.add(frame);
-  return true;
+  bus_.drain([this](const can::Frame& frame) noexcept { take(frame); });
 }
 
 void HandLink::take(const can::Frame& frame) noexcept {
-  load_.add(frame);
   if (foreign_ == rt::Foreign::kNone) foreign_ = foreign_kind(frame);
   if (inputs_id_ != 0 && frame.id == inputs_id_ && frame.dlc == buttons_.bits / 8) {
     pending_inputs_ = static_cast<std::uint32_t>(can::data_word(frame));
@@ -153,11 +141,10 @@ void HandLink::take_part(unsigned part) noexcept {
 rt::HandReading HandLink::reading() const noexcept {
   using can::cia402::State;
   rt::HandReading r;
-  r.bus_lost = was_lost_ || bus_.is_lost();
+  bus_.tell(r);
   r.foreign = foreign_;
   r.valid = valid_;
   r.age_ticks = age_ticks_;
-  r.bus_load = load_.of_last_period();
   r.enabled = valid_;
   r.buttons_stuck = has_life_ && still_sets_ >= kStillSets;
   for (std::size_t j = 0; j < rt::kJoints; ++j) {
@@ -195,12 +182,12 @@ std::int16_t HandLink::permille_of(double torque_Nm) const noexcept {
 
 std::array<std::int16_t, rt::kJoints> HandLink::write(const rt::HandCommand& command) noexcept {
   std::array<std::int16_t, rt::kJoints> sent{};
-  was_lost_ = false;
+  bus_.forget_loss();
   // A stop begins with controlword 0 and torque 0, which act at the next SYNC. NMT stop follows after that SYNC,
   // because a drive may keep its last torque while it is stopped. After a foreign controller was heard, NMT stop is
   // sent at once: until a drive is stopped, the foreign controller could command a torque.
   stops_ = command.request == rt::DriveRequest::kStop;
-  if (stops_ && foreign_ != rt::Foreign::kNone) send(can::encode_nmt(can::NmtCommand::kStop));
+  if (stops_ && foreign_ != rt::Foreign::kNone) bus_.send(can::encode_nmt(can::NmtCommand::kStop));
   if (may_beat(command.request)) beat();
   for (std::size_t j = 0; j < rt::kJoints; ++j) {
     Node& node = nodes_[j];
@@ -210,7 +197,7 @@ std::array<std::int16_t, rt::kJoints> HandLink::write(const rt::HandCommand& com
     }
     node.controlword = controlword(command.request, state, node.controlword);
     const std::int16_t torque = stops_ ? std::int16_t{0} : permille_of(command.torque_Nm[j]);
-    if (send(can::encode(can::profile::kJointNodes[j], can::Rpdo1{node.controlword, torque}))) sent[j] = torque;
+    if (bus_.send(can::encode(can::profile::kJointNodes[j], can::Rpdo1{node.controlword, torque}))) sent[j] = torque;
   }
   return sent;
 }

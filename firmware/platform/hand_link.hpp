@@ -4,8 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "firmware/platform/bus_load.hpp"
-#include "firmware/platform/can_bus.hpp"
+#include "firmware/platform/link_bus.hpp"
 #include "firmware/rt/rig_io.hpp"
 #include "protocol/can/cia402.hpp"
 #include "protocol/can/codec.hpp"
@@ -68,7 +67,6 @@ class HandLink {
   std::array<std::int16_t, rt::kJoints> write(const rt::HandCommand& command) noexcept;
 
  private:
-  static constexpr int kMaxFrames = 64;  // read per call; a period on a 1 Mbit/s bus has fewer than 22
   static constexpr int kStillSets = 10;  // complete sets without a change of the buttons' counter
   static constexpr int kObey = 10;       // periods that drives have to switch off
 
@@ -80,7 +78,6 @@ class HandLink {
     [[nodiscard]] can::cia402::State state() const noexcept;
   };
 
-  bool send(const can::Frame& frame) noexcept;
   [[nodiscard]] bool may_beat(rt::DriveRequest request) noexcept;
   [[nodiscard]] bool are_off() const noexcept;
   void beat() noexcept;
@@ -92,7 +89,7 @@ class HandLink {
   void tell_buttons(rt::HandReading& r) const noexcept;
   [[nodiscard]] bool has_word(std::size_t joint) const noexcept;
 
-  CanBus& bus_;
+  LinkBus bus_;
   double rad_per_count_, Nm_per_permille_;
   std::int32_t max_permille_, tolerance_permille_;
   device::ButtonsPlace buttons_;
@@ -104,7 +101,6 @@ class HandLink {
   std::uint32_t inputs_ = 0, pending_inputs_ = 0;
   unsigned arrived_ = 0;  // parts that came since the last SYNC
   bool valid_ = false;
-  bool was_lost_ = false;  // since the last reading; a bus may recover before it is read
   rt::Foreign foreign_ = rt::Foreign::kNone;
   bool stops_ = false;     // the last request was kStop
   int periods_on_ = 0;     // in a row, in which the drives should be off and may not be
@@ -112,7 +108,6 @@ class HandLink {
   int still_sets_ = 0;
   std::int32_t age_ticks_ = 1;
   int heartbeat_periods_, periods_to_heartbeat_;
-  BusLoad load_;
 };
 
 }  // namespace ligature::platform

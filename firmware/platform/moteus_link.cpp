@@ -25,7 +25,7 @@ MoteusLink::MoteusLink(CanBus& bus, const device::Device& device, int watchdog_m
 
 void MoteusLink::request() noexcept {
   drain();
-  load_.begin_period();
+  bus_.begin_period();
   if (!answers_.begin_period(true)) return;
   asked_ = static_cast<Extra>((static_cast<std::size_t>(asked_) + 1) % moteus::kExtras);
   for (std::size_t j = 0; j < rt::kJoints; ++j) {
@@ -38,23 +38,17 @@ void MoteusLink::request() noexcept {
 }
 
 void MoteusLink::drain() noexcept {
-  can::Frame frame;
-  for (int i = 0; i < kMaxFrames && bus_.receive(frame) == Receive::kFrame; ++i) take(frame);
-  was_lost_ = was_lost_ || bus_.is_lost();
+  bus_.drain([this](const can::Frame& frame) noexcept { take(frame); });
 }
 
 /// A refused frame is a lost bus: if torques were refused and queries not, an old torque could act on and on.
 bool MoteusLink::send(const can::Frame& frame) noexcept {
-  if (!bus_.send(frame)) {
-    was_lost_ = true;
-    return false;
-  }
-  load_.add(frame);
-  return true;
+  const bool is_taken = bus_.send(frame);
+  if (!is_taken) bus_.lose();
+  return is_taken;
 }
 
 void MoteusLink::take(const can::Frame& frame) noexcept {
-  load_.add(frame);
   if (foreign_ == rt::Foreign::kNone) foreign_ = moteus::foreign_kind(frame);
   if (const auto joint = moteus::joint_of(frame)) return take_reply(*joint, frame);
   if (frame.id != moteus::kButtonsId || frame.dlc != ButtonModule::kBytes) return;
@@ -134,11 +128,10 @@ bool MoteusLink::is_on() const noexcept {
 
 rt::HandReading MoteusLink::reading() const noexcept {
   rt::HandReading r;
-  r.bus_lost = was_lost_ || bus_.is_lost();
+  bus_.tell(r);
   r.foreign = foreign_;
   r.valid = answers_.is_valid();
   r.age_ticks = answers_.age_ticks();
-  r.bus_load = load_.of_last_period();
   r.enabled = r.valid && is_on();
   buttons_.tell(r);
   for (std::size_t j = 0; j < rt::kJoints; ++j) {
@@ -193,7 +186,7 @@ void MoteusLink::begin_switching() noexcept {
 /// told back what they were commanded.
 std::array<std::int16_t, rt::kJoints> MoteusLink::write(const rt::HandCommand& command) noexcept {
   std::array<std::int16_t, rt::kJoints> sent{};
-  was_lost_ = false;
+  bus_.forget_loss();
   for (Node& node : nodes_) node.tells_unasked = false;
   const bool wants_on = command.request == rt::DriveRequest::kEnable || command.request == rt::DriveRequest::kOperate;
   const bool has_failed = std::ranges::any_of(nodes_, &Node::has_failed) && phase_ != Phase::kOff;

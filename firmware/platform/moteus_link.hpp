@@ -7,8 +7,7 @@
 #include <optional>
 
 #include "firmware/platform/answer_set.hpp"
-#include "firmware/platform/bus_load.hpp"
-#include "firmware/platform/can_bus.hpp"
+#include "firmware/platform/link_bus.hpp"
 #include "firmware/platform/moteus_frames.hpp"
 #include "protocol/device/device.hpp"
 
@@ -45,7 +44,6 @@ class MoteusLink {
   [[nodiscard]] bool is_on() const noexcept;  ///< all drives are on, with the settings that they were commanded
 
  private:
-  static constexpr int kMaxFrames = 64;  // read per call; a period has fewer than 16
   static constexpr int kPatience = 500;  // periods until a drive is on
   static constexpr int kPause = 50;      // periods until the next trial
   static constexpr unsigned kConfirmed = (1U << moteus::kExtras) - 1U;
@@ -62,7 +60,7 @@ class MoteusLink {
   void begin_switching() noexcept;
   [[nodiscard]] std::int16_t permille_of(double torque_Nm) const noexcept;
 
-  CanBus& bus_;
+  LinkBus bus_;
   double Nm_per_permille_;
   std::int32_t max_permille_;
   moteus::Limits limits_;
@@ -71,11 +69,9 @@ class MoteusLink {
   moteus::Extra asked_{};  // the extra register of the last request: an answer to another one is late
   AnswerSet answers_{static_cast<int>(moteus::kExtras)};
   ButtonModule buttons_;
-  bool was_lost_ = false;
   rt::Foreign foreign_ = rt::Foreign::kNone;
   Phase phase_ = Phase::kOff;
   int switching_periods_ = 0, pause_periods_ = 0;
-  BusLoad load_;
 };
 
 }  // namespace ligature::platform

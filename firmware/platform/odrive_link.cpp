@@ -33,7 +33,7 @@ void OdriveLink::forget_targets() noexcept {
 
 void OdriveLink::request() noexcept {
   drain();
-  load_.begin_period();
+  bus_.begin_period();
   foreign_periods_ = std::max(foreign_periods_ - 1, 0);
   for (Node& node : nodes_) {
     node.silent = std::min(node.silent + 1, kMany);
@@ -51,19 +51,15 @@ void OdriveLink::ask_all() noexcept {
 }
 
 void OdriveLink::drain() noexcept {
-  can::Frame frame;
-  for (int i = 0; i < kMaxFrames && bus_.receive(frame) == Receive::kFrame; ++i) take(frame);
-  was_lost_ = was_lost_ || bus_.is_lost();
+  bus_.drain([this](const can::Frame& frame) noexcept { take(frame); });
 }
 
 /// A refused frame is a lost bus: if torques were refused and requests not, an old torque could act on and on.
 bool OdriveLink::send(const can::Frame& frame) noexcept {
-  if (!bus_.send(frame)) {
-    was_lost_ = has_refused_ = true;
-    return false;
-  }
-  load_.add(frame);
-  return true;
+  if (bus_.send(frame)) return true;
+  has_refused_ = true;
+  bus_.lose();
+  return false;
 }
 
 bool OdriveLink::send_limits(std::size_t joint) noexcept {
@@ -72,7 +68,6 @@ bool OdriveLink::send_limits(std::size_t joint) noexcept {
 }
 
 void OdriveLink::take(const can::Frame& frame) noexcept {
-  load_.add(frame);
   if (const auto kind = odrive::foreign_kind(frame); kind != rt::Foreign::kNone) {
     foreign_periods_ = kNear;
     if (foreign_ == rt::Foreign::kNone) foreign_ = kind;
@@ -127,11 +122,10 @@ void OdriveLink::take_part(std::size_t part) noexcept {
 
 rt::HandReading OdriveLink::reading() const noexcept {
   rt::HandReading r;
-  r.bus_lost = was_lost_ || bus_.is_lost();
+  bus_.tell(r);
   r.foreign = foreign_;
   r.valid = answers_.is_valid();
   r.age_ticks = answers_.age_ticks();
-  r.bus_load = load_.of_last_period();
   r.enabled = r.valid;
   buttons_.tell(r);
   r.drive_fault = was_away_;
@@ -152,7 +146,7 @@ std::int16_t OdriveLink::permille_of(double torque_Nm) const noexcept {
 /// that start-up has tried. So the drives stay off until the controller is started again.
 std::array<std::int16_t, rt::kJoints> OdriveLink::write(const rt::HandCommand& command) noexcept {
   std::array<std::int16_t, rt::kJoints> sent{};
-  was_lost_ = false;
+  bus_.forget_loss();
   for (Node& node : nodes_) node.had_error = node.was_off = node.tells_unasked = false;
   // Another controller that comes while a fault is latched changes no request, but must find the drives stopped.
   const bool stops = command.request == rt::DriveRequest::kStop || foreign_ != rt::Foreign::kNone;

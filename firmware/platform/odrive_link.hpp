@@ -6,8 +6,7 @@
 #include <cstdint>
 
 #include "firmware/platform/answer_set.hpp"
-#include "firmware/platform/bus_load.hpp"
-#include "firmware/platform/can_bus.hpp"
+#include "firmware/platform/link_bus.hpp"
 #include "firmware/platform/odrive_frames.hpp"
 #include "protocol/device/device.hpp"
 
@@ -52,7 +51,6 @@ class OdriveLink {
   bool send_limits(std::size_t joint) noexcept;
 
  private:
-  static constexpr int kMaxFrames = 64;   // read per call; a period on a 1 Mbit/s bus has fewer than 22
   static constexpr int kNear = 10;        // periods after a frame of another controller, which may send more
   static constexpr int kMargin = 3;       // periods of a silence beyond the longest watchdog that start-up accepts
   static constexpr int kMissedBeats = 3;  // heartbeats of a drive that may be missing in a row
@@ -67,7 +65,7 @@ class OdriveLink {
   void bring_up() noexcept;
   [[nodiscard]] std::int16_t permille_of(double torque_Nm) const noexcept;
 
-  CanBus& bus_;
+  LinkBus bus_;
   double Nm_per_permille_;
   std::int32_t max_permille_;
   device::OdriveProfile profile_;
@@ -76,7 +74,7 @@ class OdriveLink {
   std::array<float, rt::kJoints> pending_rev_{}, rev_{};
   AnswerSet answers_;
   ButtonModule buttons_;
-  bool was_lost_ = false, has_refused_ = false;
+  bool has_refused_ = false;
   bool was_away_ = false;  // a drive was silent for too long. It may have started anew, untested
   rt::Foreign foreign_ = rt::Foreign::kNone;
   int off_periods_ = 0;       // in a row, in which the drives should be off
@@ -85,7 +83,6 @@ class OdriveLink {
   bool may_ask_ = true;       // the drives may be on, or all have said that they are off
   int up_periods_ = 0;        // since the last round of commands to switch drives on
   bool is_prepared_ = false;  // the bus has taken this drive's mode and limits
-  BusLoad load_;
 };
 
 }  // namespace ligature::platform
