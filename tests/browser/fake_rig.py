@@ -6,8 +6,8 @@
     propagation L R   the paper's condition at each hand   arm   go to FORCE
     hands       two simulated hands listen, as `ligature-device --operator page`
     quiet       stop publishing      go              publish again             restart [T]   another session, from tick T
-It prints "ready" when it publishes, "command NAME" for each command received, and "wish left" or "wish left leaves" for
-each message to a hand that the hand obeys. All values are made up.
+It prints "ready" when it publishes, "armed" after each `arm`, "command NAME" for each command received, and "wish left"
+or "wish left leaves" for each message to a hand that the hand obeys. All values are made up.
 """
 
 import argparse
@@ -183,6 +183,7 @@ class Rig:
         elif word == "arm":
             self.fault = 0
             self.go_to(4)
+            print("armed", flush=True)
         elif word in ("quiet", "go"):
             self.quiet = word == "quiet"
         elif word == "restart":

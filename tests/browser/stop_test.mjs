@@ -15,7 +15,7 @@ const view = new Program(host, ['view', '--port', '0', '--recordings', out]);
 const own = new URL(await view.says(/open (\S+)/));
 const saboteur = await Saboteur.between(own.host);
 const CORE = ['guard.js', 'main.js', 'link.js', 'frame.js', 'names.js', 'numbers.js', 'state_panel.js', 'controls.js'];
-let failures = 0, cases = 0;
+let failures = 0, cases = 0, arms = 0;
 
 /** Opens the page on a rig in FORCE, checks its state display, and stops. @param file the broken file, or null. */
 async function stops(browser, name, file, look) {
@@ -23,14 +23,16 @@ async function stops(browser, name, file, look) {
   const began = Date.now(), mayNotKnow = CORE.includes(file), heard = rig.heard.length;
   const page = await browser.sheet();
   // Repeatedly, because a late second STOP of the previous page may disarm the rig again.
-  const arming = setInterval(() => rig.tell('arm'), 500);
+  const arming = setInterval(() => { ++arms; rig.tell('arm'); }, 500);
   try {
     await page.goto(saboteur.url);
     await shows(page, mayNotKnow ? ['FORCE', 'UNKNOWN'] : ['FORCE']);
     clearInterval(arming);
+    await armed(); // a rig that obeys the last `arm` after STOP would be in FORCE again
     await look(page);
+    const before = rig.heard.length;
     if (cases % 2) await page.keyboard.press('Space'); else await page.click('#stop');
-    await says(/command stop/, heard);
+    await says(() => /command stop/.test(rig.heard.slice(before)), 'STOP');
     assert.equal((rig.heard.slice(heard).match(/command (?!stop)\S+/g) ?? []).join(), '', 'nothing else was commanded');
     const said = await shows(page, mayNotKnow ? ['IDLE', 'UNKNOWN'] : ['IDLE']);
     console.log(`ok   ${name}: ${said} (${((Date.now() - began) / 1000).toFixed(1)} s)`);
@@ -48,10 +50,13 @@ async function shows(page, states) {
   return page.evaluate(() => document.getElementById('state-name').textContent);
 }
 
-async function says(pattern, from) {
+/** Waits until the rig has obeyed every `arm` told so far. */
+const armed = () => says(() => (rig.heard.match(/^armed$/gm) ?? []).length >= arms, 'each arm');
+
+async function says(isHeard, what) {
   const until_ms = Date.now() + 60_000;
-  while (!pattern.test(rig.heard.slice(from))) {
-    if (Date.now() > until_ms) throw new Error(`the rig never heard ${pattern}`);
+  while (!isHeard()) {
+    if (Date.now() > until_ms) throw new Error(`the rig never heard ${what}`);
     await new Promise((resolve) => setTimeout(resolve, 10));
   }
 }
