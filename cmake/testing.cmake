@@ -3,11 +3,7 @@
 # at the same time.
 if(LIGATURE_TESTS)
   enable_testing()
-  if(CMAKE_CROSSCOMPILING)  # the packaged library is for this machine; its sources are packaged, too
-    add_subdirectory(/usr/src/googletest/googletest googletest EXCLUDE_FROM_ALL)
-  else()
-    find_package(GTest REQUIRED)
-  endif()
+  find_package(GTest REQUIRED)
   include(GoogleTest)
   add_library(ligature_seed_told OBJECT ${PROJECT_SOURCE_DIR}/tests/support/seed_told.cpp)
   target_link_libraries(ligature_seed_told PRIVATE ligature_options GTest::gtest)

@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# Unpacks Debian's arm64 packages into build/arm64/root: the libraries of the preset rig-arm64, and the programs that a
+# guest runs. Nothing in it is installed on this machine. scripts/setup arm64 calls it.
+# A folder, and not `apt install PACKAGE:arm64`, because liblcm-dev and libhdf5-dev exclude their amd64 versions.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+packages=(
+  libc6-dev libstdc++-12-dev libeigen3-dev liblcm-dev libtomlplusplus-dev libcli11-dev libspdlog-dev nlohmann-json3-dev
+  libboost-dev libhdf5-dev libzstd-dev libgtest-dev
+  bash busybox-static coreutils findutils grep util-linux procps iproute2 can-utils libc-bin
+)
+root=build/arm64/root
+. /etc/os-release  # the release of the cross compiler
+[ "$VERSION_CODENAME" = bookworm ] || packages=("${packages[@]/libstdc++-12/libstdc++-14}")
+wanted="$VERSION_CODENAME ${packages[*]}"
+[ "$(cat $root/complete 2>/dev/null)" != "$wanted" ] || exit 0
+echo "setup: unpacking ${#packages[@]} arm64 packages of $VERSION_CODENAME, and what they need, into $root"
+rm -rf $root
+mkdir -p $root
+mmdebstrap --quiet --variant=extract --arch=arm64 --include="$(IFS=,; echo "${packages[*]}")" "$VERSION_CODENAME" $root
+echo "$wanted" > $root/complete
