@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Unpacks Debian's arm64 packages into build/arm64/root: the libraries of the preset rig-arm64, and the programs that a
-# guest runs. Nothing in it is installed on this machine. scripts/setup arm64 calls it.
+# guest runs. Nothing in it is installed on this machine. scripts/setup arm64 and hil-arm64 call it.
 # A folder, and not `apt install PACKAGE:arm64`, because liblcm-dev and libhdf5-dev exclude their amd64 versions.
 set -euo pipefail
 cd "$(dirname "$0")/.."

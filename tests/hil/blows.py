@@ -5,7 +5,7 @@ import subprocess
 
 import cantools
 
-from scenario import BIN, ENGAGE, FAULT, FORCE, IDLE, LOST, MISSED, Scenario, pushes, ticks_of, wire_of
+from scenario import ENGAGE, FAULT, FORCE, IDLE, LOST, MISSED, Scenario, program, pushes, ticks_of, wire_of
 
 WATCHDOG_TICKS = 20
 ERROR_FRAME, BUS_OFF = 0x20000000, 0x20000040  # linux/can/error.h
@@ -103,7 +103,7 @@ class FirstBlows:
         self.ends_in((10,), rows, left, right, self.tick_before(rows, left, last), (0, 1))
 
     def test_candump_decodes_fully(self):
-        dbc = cantools.database.load_string(subprocess.run([BIN / "ligature-can-describe", "dbc"], capture_output=True, text=True, check=True).stdout, "dbc")
+        dbc = cantools.database.load_string(subprocess.run([*program("ligature-can-describe"), "dbc"], capture_output=True, text=True, check=True).stdout, "dbc")
         counts = {}
         for _, identifier, data in wire_of(self.folder / "hand-killed"):
             message = dbc.get_message_by_frame_id(identifier)

@@ -1,9 +1,10 @@
 """Unpacks Debian's PREEMPT_RT kernel into a folder; it is neither installed nor booted on this machine.
 
-Usage: kernel.py FOLDER; scripts/setup hil does it."""
+Usage: kernel.py FOLDER [arm64]; scripts/setup hil and scripts/setup hil-arm64 do it."""
 
 import lzma
 import pathlib
+import platform
 import shutil
 import subprocess
 import sys
@@ -32,24 +33,22 @@ def package():
     return names[0]
 
 
-def fetch(cache):
+def fetch(cache, arm64=False):
     """@return the folder with boot/ and the kernel's modules. The package is downloaded once, and again only if that
     folder was removed or lacks a module."""
     here = sorted(mark.parent for mark in cache.glob("*/complete"))
     if here and complete(here[-1]):
         return here[-1]
-    name = package()
-    folder = cache / name
-    print(f"hil: fetching {name}, 70 MB", flush=True)
+    folder = cache / "linux-image-rt-arm64" if arm64 else cache / package()
+    print(f"hil: fetching {folder.name}, 70 MB", flush=True)
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    got = subprocess.run(["apt-get", "download", "-q", name], cwd=folder, capture_output=True, text=True)
-    if got.returncode != 0:
-        raise RuntimeError(f"apt-get download {name}: {got.stderr.strip().splitlines()[-1]}")
-    archive = next(folder.glob("*.deb"))
-    subprocess.run(["dpkg-deb", "-x", archive.name, "."], cwd=folder, check=True)
-    archive.unlink()
-    unpack(next((folder / "boot").glob("vmlinuz-*")), folder / "vmlinux")
+    if arm64:
+        download_arm64(folder)
+        next((folder / "boot").glob("vmlinuz-*")).rename(folder / "vmlinux")  # not packed
+    else:
+        download(folder)
+        unpack(next((folder / "boot").glob("vmlinuz-*")), folder / "vmlinux")
     unpack_modules(folder)
     needed = set(modules(folder, MODULES + OF_A_DISK))  # all modules together have 400 MB
     for module in folder.rglob("*.ko"):
@@ -57,6 +56,25 @@ def fetch(cache):
             module.unlink()
     (folder / "complete").touch()
     return folder
+
+
+def download(folder):
+    name = folder.name
+    got = subprocess.run(["apt-get", "download", "-q", name], cwd=folder, capture_output=True, text=True)
+    if got.returncode != 0:
+        raise RuntimeError(f"apt-get download {name}: {got.stderr.strip().splitlines()[-1]}")
+    archive = next(folder.glob("*.deb"))
+    subprocess.run(["dpkg-deb", "-x", archive.name, "."], cwd=folder, check=True)
+    archive.unlink()
+
+
+def download_arm64(folder):
+    """By mmdebstrap, because this machine's apt knows only packages of its own architecture."""
+    release = platform.freedesktop_os_release()["VERSION_CODENAME"]
+    got = subprocess.run(["mmdebstrap", "--quiet", "--variant=extract", "--arch=arm64", f"--include={folder.name}", release, folder],
+                         capture_output=True, text=True)
+    if got.returncode != 0:
+        raise RuntimeError(f"mmdebstrap {folder.name}: {got.stderr.strip().splitlines()[-1]}")
 
 
 def unpack(bzimage, to):
@@ -125,6 +143,6 @@ def modules(folder, names=MODULES):
 
 if __name__ == "__main__":
     try:
-        fetch(pathlib.Path(sys.argv[1]))
+        fetch(pathlib.Path(sys.argv[1]), arm64=sys.argv[2:] == ["arm64"])
     except (RuntimeError, OSError) as error:
         sys.exit(f"hil: {error}")

@@ -18,7 +18,8 @@ import unittest
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 BIN = pathlib.Path(os.environ["LIGATURE_BIN"])
-OUT = pathlib.Path(os.environ.get("LIGATURE_HIL_OUT", ROOT / "build/hil"))
+ARM64 = "LIGATURE_HIL_ARM64" in os.environ  # guest and programs are of arm64
+OUT = pathlib.Path(os.environ.get("LIGATURE_HIL_OUT", ROOT / ("build/hil/arm64" if ARM64 else "build/hil")))
 LOST, MISSED, OVERWORKED, LATE, CUT = 1, 2, 128, 256, 512
 CLOCK = 2  # thread_end: ended by the clock
 IDLE, ENGAGE, FORCE, FAULT = 2, 3, 4, 6
@@ -33,6 +34,8 @@ def guest(name, *options, timeout=LONGEST_S):
     shutil.rmtree(out, ignore_errors=True)
     out.mkdir(parents=True)
     began = time.monotonic()
+    if ARM64:
+        options = ("--arm64", *options)
     print(f"hil: {name} ..", flush=True)
     with open(out / "guest.log", "w") as log:
         process = subprocess.Popen([sys.executable, HERE / "guest.py", "--out", out, "--timeout", str(timeout), *options, "--",
@@ -51,10 +54,15 @@ VIRTUAL = ("--icount", "0")
 AS_FAST_AS_A_RIG = (*VIRTUAL, "--per-ns", "5")  # 5 million instructions per ms, as the physics assumes of a rig's core
 
 
+def program(name):
+    """Command that runs one of the guest's programs on this machine."""
+    return [*(["qemu-aarch64", "-L", ROOT / "build/arm64/root"] if ARM64 else []), BIN / name]
+
+
 def ticks_of(folder, recorded="flight.rec"):
     """The flight recorder's file, or the copy saved at a fault, as a list of rows."""
     made = folder / f"{recorded}.csv"
-    subprocess.run([BIN / "ligature-host", "export", folder / recorded, "--ticks", made], check=True, capture_output=True, timeout=120)
+    subprocess.run([*program("ligature-host"), "export", folder / recorded, "--ticks", made], check=True, capture_output=True, timeout=120)
     with open(made) as file:
         rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
     return [{k: float(v) if "." in v or "e" in v else int(v) for k, v in row.items()} for row in rows]
