@@ -12,10 +12,20 @@ packages=(
 root=build/arm64/root
 . /etc/os-release  # the release of the cross compiler
 [ "$VERSION_CODENAME" = bookworm ] || packages=("${packages[@]/libstdc++-12/libstdc++-14}")
-wanted="$VERSION_CODENAME ${packages[*]}"
+wanted="$VERSION_CODENAME $(sha256sum < scripts/arm64_root.sh)"
 [ "$(cat $root/complete 2>/dev/null)" != "$wanted" ] || exit 0
 echo "setup: unpacking ${#packages[@]} arm64 packages of $VERSION_CODENAME, and what they need, into $root"
 rm -rf $root
 mkdir -p $root
-mmdebstrap --quiet --variant=extract --arch=arm64 --include="$(IFS=,; echo "${packages[*]}")" "$VERSION_CODENAME" $root
+# The hook makes dpkg's database, as if the packages were installed: dpkg-shlibdeps finds in it which package a library is from.
+# shellcheck disable=SC2016  # expanded by the hook's shell
+hook='for deb in "$1"/var/cache/apt/archives/*.deb; do
+  info=$1/var/lib/dpkg/info; mkdir -p $info; echo 1 > $info/format
+  name=$(dpkg-deb -f $deb Package)
+  [ "$(dpkg-deb -f $deb Multi-Arch)" != same ] || name=$name:arm64
+  dpkg-deb --fsys-tarfile $deb | tar -t | sed "s#^\.##; s#/\$##; /^\$/d" > $info/$name.list
+  for file in symbols shlibs; do ! dpkg-deb -I $deb $file > $info/$name.$file 2>/dev/null || continue; rm $info/$name.$file; done
+  { dpkg-deb -f $deb Package Version Architecture Multi-Arch Maintainer Description Provides; echo Status: install ok installed; echo; } >> $1/var/lib/dpkg/status
+done'
+mmdebstrap --quiet --variant=extract --arch=arm64 --include="$(IFS=,; echo "${packages[*]}")" --extract-hook="$hook" "$VERSION_CODENAME" $root
 echo "$wanted" > $root/complete
