@@ -7,7 +7,7 @@ With --still nobody holds the hand. Its standard input takes words, one a line:
     run-away           drive 2 makes a torque of its own, and obeys neither controlword nor NMT
 It says on standard output, one word a line with figures:
     ready                          the bus can be opened
-    enabled, felt                  all drives are enabled; a drive makes torque
+    enabled, felt                  all drives are enabled; with all enabled, a drive makes torque
     zero BY TICKS                  the torque of all drives is zero: by the word `release`, `fail` or `run-away`, after so many SYNCs
     gone                           the controller has left the bus while torque acts
     silent MS TORQUE               so many ms later the torque is zero, or after 5 s it still is TORQUE"""
@@ -45,10 +45,13 @@ class Hand:
     def torque(self):
         return max(abs(s.torque) for s in self.nodes.servos)
 
+    @property
+    def is_on(self):
+        return all(s.state == 0x27 for s in self.nodes.servos)
+
     def on_sync(self, now):
         self.syncs, self.synced_at = self.syncs + 1, now
-        is_on = all(s.state == 0x27 for s in self.nodes.servos)
-        if is_on or "felt" in self.told:
+        if self.is_on or "felt" in self.told:
             self.syncs_on += 1
         else:
             self.syncs_on = 0  # start-up may have switched the drives on and off again
@@ -56,10 +59,10 @@ class Hand:
         held = 0 if self.still else GRIP | DEAD_MAN if self.pressed and self.syncs_on > 50 else GRIP
         self.nodes.place((START[0] + turned, *START[1:]), held << self.shift)
         self.nodes.on_sync()
-        if is_on:
+        if self.is_on:  # a drive that damps makes torque, too, when start-up tries its watchdog
             self.once("enabled")
-        if self.torque > FELT:
-            self.once("felt")
+            if self.torque > FELT:
+                self.once("felt")
 
     def look_at_torque(self, now):
         """After each frame: some controllers send no more SYNCs after a fault. Then each millisecond counts as one."""
