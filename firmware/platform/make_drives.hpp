@@ -16,7 +16,7 @@ namespace ligature::platform {
 [[nodiscard]] std::unique_ptr<HandDrives> make_drives(CanBus& bus, const device::Device& device, int watchdog_ms,
                                                       std::size_t hand);
 
-/// Bus time of these drives, known before a bus is open.
+/// How long the messages of a period with these drives occupy the bus. Known from the record, before a bus is open.
 [[nodiscard]] rt::BusTime bus_time_of(const device::Device& device) noexcept;
 
 /// Which guarantees drives of this record cannot give, one line each, before a bus is open.

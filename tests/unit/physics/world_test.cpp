@@ -192,7 +192,8 @@ TEST(Gripper, TakesAlongWhatItMeetsHoweverFastItIs) {
 
 TEST(Frame, ItsHookStopsAThreadThrownOverIt) {
   for (const auto& [collides, stopped] : {std::pair{"true", true}, std::pair{"false", false}}) {
-    // The free end lies across the hook, 0.1 m above the fixed node, and falls onto the hook or through it.
+    // Gravity acts along +x. The hook reaches from the fixed node against it, by 4 radii along -x; the free end is laid
+    // across its tip, two radii (0.1 m) beside its axis, and must touch it. Without frame_collides there is no hook.
     Simulation sim =
         make(paper_scene({std::string("world.frame_collides=") + collides, "world.gravity_m_per_s2=[9.8,0.0,-1e-9]"}));
     std::vector<Vec3> p;

@@ -142,8 +142,8 @@ TEST(Growth, AListCostsByTheNodeAndByThePair) {
   }
 }
 
-// A thread without a knot, drawn along at 1 m/s. Its segments of two thirds of a diameter are the worst case for pairs
-// of neighbours along the thread.
+// A thread without a knot, drawn along at 1 m/s. With 1500 nodes its segments are two thirds of a diameter long, the
+// worst case for pairs of neighbours along the thread.
 TEST(Growth, ATickOfADrawnThreadCostsTheSamePerNode) {
   for (const int nodes : {512, 1024, 1500, 2000}) {
     Rod rod(Material{}, Numerics{}, Parts{true, true, true, false, false}, nodes);

@@ -131,8 +131,7 @@ Pull pull(const scene::Scene& scene, double force_N, double wait_s, const Hands&
 }
 
 // While the solver has no solution the thread is not moved, and a knot that is not moved seems perfect. Therefore the
-// share of time lost is checked. It is 0.10 for the square knot. It would be 0.27 if no substep could take more than
-// its fair share of the budget, and if the next waiting were as long after one that did not help.
+// share of time lost is checked. It is 0.10 for the square knot.
 TEST(Overhand, IsDrawnTightWithoutStandingStill) {
   EXPECT_LT(pull(load("suture-3-0-knot.toml"), 5.0, 1.0).lost, 0.005);
 }
