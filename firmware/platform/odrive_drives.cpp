@@ -258,37 +258,38 @@ std::optional<std::string> OdriveDrives::clear_errors(BusWait& wait) {
   return expect(wait, beats(3) + kOnTheWay, {.torque_Nm = 0.0F}, is_clear, "keeps its error");
 }
 
-/// Idle to all drives; to those for which the bus refused it, again in the next periods, until its queue has room.
-void OdriveDrives::send_idle(BusWait& wait) {
-  constexpr int kMostPeriods = 10;
+/// Idle to all drives; to those for which the bus refused it, again in each period: its queue gets room, and a bus that
+/// was lost may come back (a CAN controller restarts after 0.1 s, docs/deployment.md). @return whether all were sent
+bool OdriveDrives::send_idle(BusWait& wait) {
+  const Nanoseconds deadline = wait.now() + kPatience;
   std::array<bool, rt::kJoints> is_sent{};
-  for (int period = 0; period < kMostPeriods; ++period) {
+  do {
     for (unsigned node = 1; node <= rt::kJoints; ++node) {
       if (!is_sent[node - 1]) is_sent[node - 1] = link_.send(idle(node));
     }
-    if (bus_.is_lost() || std::ranges::all_of(is_sent, std::identity{})) return;
+    if (std::ranges::all_of(is_sent, std::identity{})) return true;
     const Nanoseconds next = wait.now() + kPeriod;
     while (wait.wait(next)) link_.drain();
-  }
+  } while (wait.now() < deadline);
+  return false;
 }
 
 /// Zero torque, then idle, then silence until the drives say that they are off: any frame could feed the watchdog of
-/// one that does not obey. Once more after that. It goes on also if another controller is heard or the bus refuses
-/// frames.
+/// one that does not obey. Once more after that. It goes on also if another controller is heard, the bus refuses frames
+/// or is lost for a while.
 std::optional<std::string> OdriveDrives::switch_off(BusWait& wait) {
   constexpr int kTimes = 2;
   const auto is_off = [](const Node& node) { return node.beats >= 2 && node.heartbeat.state == odrive::kIdle; };
   send_traffic({.torque_Nm = 0.0F});
-  for (int times = 0; times < kTimes; ++times) {
-    send_idle(wait);
+  for (int times = 0; times < kTimes && send_idle(wait); ++times) {
     link_.forget_beats();
     const Nanoseconds deadline = wait.now() + milliseconds(profile_.watchdog_ms) + beats(3) + kOnTheWay;
     do {
       link_.drain();
       if (std::ranges::all_of(link_.nodes(), is_off)) return std::nullopt;
-      if (bus_.is_lost()) return "the bus is lost: cut the drives' power";
     } while (wait.wait(deadline));
   }
+  if (bus_.is_lost()) return "the bus is lost: cut the drives' power";
   std::string text;
   for (std::size_t j = 0; j < rt::kJoints; ++j)
     if (!is_off(link_.nodes()[j])) text += (text.empty() ? "" : "; ") + ("node " + std::to_string(j + 1)) + kStaysOn;

@@ -53,7 +53,7 @@ class OdriveDrives final : public HandDrives {
   [[nodiscard]] std::optional<std::string> try_watchdog(BusWait& wait);
   [[nodiscard]] std::optional<std::string> clear_errors(BusWait& wait);
   [[nodiscard]] std::optional<std::string> switch_off(BusWait& wait);
-  void send_idle(BusWait& wait);
+  [[nodiscard]] bool send_idle(BusWait& wait);
   void send_traffic(const Traffic& traffic) noexcept;
   void pause(BusWait& wait);
   template <class MakeFrame>

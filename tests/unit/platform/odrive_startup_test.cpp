@@ -198,6 +198,21 @@ TEST(OdriveInOperation, ADriveThatObeysNothingStarvesAlsoAfterAStop) {
   EXPECT_LE(ticks, 45) << "ten periods with emergency stops, then the watchdog";
 }
 
+/// At the end of a run the bus is lost, and comes back after 0.2 s, as a CAN controller that restarts. The drives have
+/// no watchdog, so they go off only if the firmware tries again until then.
+TEST(OdriveStartUp, ReleaseWaitsForALostBusToComeBack) {
+  const OdriveSettings on{.watchdog = milliseconds(0), .starts_in_closed_loop = true};
+  OdriveHand rig(on, on);
+  rig.bus.lost = true;
+  const Nanoseconds begin = rig.wait.time;
+  rig.wait.on_wait = [&] {
+    rig.bus.lost = rig.wait.time - begin < milliseconds(200);
+    rig.advance();
+  };
+  EXPECT_EQ(rig.drives.release(rig.wait), std::nullopt);
+  EXPECT_TRUE(rig.is_off());
+}
+
 /// If drives cannot be switched off, the message must name each of them.
 TEST(OdriveStartUp, ReleaseNamesEveryDriveThatStaysOn) {
   const OdriveSettings on{.watchdog = milliseconds(0), .starts_in_closed_loop = true, .obeys_idle = false};
