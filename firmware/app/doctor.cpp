@@ -20,6 +20,7 @@
 #include "firmware/app/doctor/hwlat.hpp"
 #include "firmware/app/doctor/load.hpp"
 #include "firmware/app/doctor/report.hpp"
+#include "firmware/app/doctor/timerlat.hpp"
 #include "firmware/app/drive_checks.hpp"
 #include "firmware/app/rig_setup.hpp"
 #include "firmware/platform/core_checks.hpp"
@@ -34,7 +35,8 @@ using platform::Grade;
 
 constexpr auto kPeriod = std::chrono::milliseconds(1);
 constexpr std::int64_t kGood_ns = 100'000, kUsable_ns = 300'000;
-constexpr std::size_t kBins = 12;  // upper bounds 1, 2, 4, .. 1024 us, and one bin for longer
+constexpr double kCulprit_s = 60.0;  // longest search for what delays wake-ups
+constexpr std::size_t kBins = 12;    // upper bounds 1, 2, 4, .. 1024 us, and one bin for longer
 
 /// Output of a shell command. `interface` was validated before, so it cannot inject shell syntax.
 std::string ip_details(const std::string& interface) {
@@ -136,6 +138,13 @@ Check gaps_row(const std::string& found) {
   return {Grade::kWarn, kWhat, found, "run this as root on a kernel with CONFIG_HWLAT_TRACER"};
 }
 
+/// Not graded: the row of the wake-ups is.
+Check culprit_row(const std::string& found) {
+  const bool is_known = !found.starts_with("not looked for");
+  return {Grade::kOk, "latest wake-up", found,
+          is_known ? "" : "apt install rtla; then run this as root on a kernel with CONFIG_TIMERLAT_TRACER"};
+}
+
 Check echo_row(const CanEcho& echo) {
   if (!echo.problem.empty())
     return {Grade::kFail, "CAN round trip", echo.interface + ": " + echo.problem,
@@ -161,7 +170,8 @@ Check judge(const rt::DurationStatistics& wakeup) {
                 us(wakeup.quantile_ns(0.999)), us(wakeup.max_ns()));
   if (wakeup.max_ns() < kGood_ns) return {Grade::kOk, "wake-up latency", found, {}};
   return {wakeup.max_ns() < kUsable_ns ? Grade::kWarn : Grade::kFail, "wake-up latency", found,
-          "mend the rows above, take other work off this machine; 'rtla timerlat hist' finds the culprit"};
+          "mend the rows above, take other work off this machine; the row 'latest wake-up' of an acceptance test names "
+          "the culprit"};
 }
 
 Check judge(const LatencyHistogram& wakeup, double slack_us) {
@@ -173,7 +183,8 @@ Check judge(const LatencyHistogram& wakeup, double slack_us) {
   constexpr const char* kWhat = "wake-up, this scene";
   if (wakeup.max_us() < slack_us / 2) return {Grade::kOk, kWhat, found, {}};
   return {wakeup.max_us() < slack_us ? Grade::kWarn : Grade::kFail, kWhat, found,
-          "mend the rows above, take other work off this machine; 'rtla timerlat hist' finds the culprit"};
+          "mend the rows above, take other work off this machine; the row 'latest wake-up' of an acceptance test names "
+          "the culprit"};
 }
 
 std::string table(const std::vector<Check>& checks) {
@@ -221,7 +232,7 @@ void measure(const DoctorOptions& options, DoctorReport& report) {
     rows.push_back(gaps_row(report.hardware));
   }
   if (options.load) {
-    load.emplace(options.duration_s() + 10.0 * static_cast<double>(options.can.size()) + 1.0);
+    load.emplace(options.duration_s() + kCulprit_s + 10.0 * static_cast<double>(options.can.size()) + 1.0);
     report.load = load->kinds();
   }
   if (options.is_acceptance())
@@ -235,8 +246,15 @@ void measure(const DoctorOptions& options, DoctorReport& report) {
   report.seconds = latency.seconds;
   for (const auto& late : latency.worst)
     if (late.late_us > 0.0) report.worst.push_back(late);
+  if (options.is_acceptance() && !g_stop) {
+    // As late as half of the worst: that will happen again soon
+    const double least_us = latency.fine.max_us() / 2, seconds = std::min(kCulprit_s, options.duration_s());
+    std::fprintf(stderr, "looking for what delays a wake-up by %.0f us, for %.0f s at most ..\n", least_us, seconds);
+    report.delayed_by = look_for_culprit(report.core, least_us, seconds);
+  }
   for (const auto& r : latency.refusals) rows.push_back({Grade::kFail, "rights", r, {}});
   rows.push_back(report.slack_us ? judge(latency.fine, *report.slack_us) : judge(latency.wakeup));
+  if (!report.delayed_by.empty()) rows.push_back(culprit_row(report.delayed_by));
   std::fputs((histogram(latency.wakeup, latency.bins) + table(rows)).c_str(), stdout);
   report.checks.insert(report.checks.end(), rows.begin(), rows.end());
 }

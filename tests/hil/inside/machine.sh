@@ -4,8 +4,9 @@
 echo "machine: back end on vcan"
 "$LIGATURE_TESTS/test_socketcan" > /hil/socketcan.log 2>&1 || { cat /hil/socketcan.log; exit 1; }
 echo "machine: doctor"
+mount -t tracefs tracefs /sys/kernel/tracing
 ip link set can0 up txqueuelen 8 type can bitrate 1000000 sample-point 0.8
-"$LIGATURE_BIN/ligature-firmware" doctor --can vcan0 --can can0 --seconds 2 > /hil/doctor.log 2>&1 && code=0 || code=$?
+"$LIGATURE_BIN/ligature-firmware" doctor --can vcan0 --can can0 --seconds 2 --report /hil/doctor.json > /hil/doctor.log 2>&1 && code=0 || code=$?
 echo "$code" > /hil/doctor.code
 echo "machine: a real-time rig for nobody"
 chmod 777 /run

@@ -10,6 +10,7 @@
 #include "firmware/app/doctor/hwlat.hpp"
 #include "firmware/app/doctor/load.hpp"
 #include "firmware/app/doctor/report.hpp"
+#include "firmware/app/doctor/timerlat.hpp"
 
 namespace ligature::app {
 namespace {
@@ -62,6 +63,7 @@ DoctorReport some_report() {
   r.scene = "scenes/paper.toml";
   r.slack_us = 210.5;
   r.hardware = "none";
+  r.delayed_by = "21 us late";
   r.checks = {{platform::Grade::kOk, "kernel", "fine", ""}, {platform::Grade::kFail, "own core", "none", "do it"}};
   for (const int us : {3, 3, 4, 250, 20'000}) r.wakeup.add(us * 1000);
   r.worst = {{1.5, 20'000.0}, {2.5, 250.0}};
@@ -117,6 +119,29 @@ TEST(DoctorHwlat, TheLongestGapIsFoundInTheTrace) {
   EXPECT_FALSE(longest_gap_us("# tracer: hwlat\n").has_value());
   EXPECT_FALSE(longest_gap_us("inner/outer(us): x/y").has_value());
   EXPECT_NE(look_for_gaps("/no/such/folder", 1.0).find("not looked for"), std::string::npos);
+}
+
+/// The trace of Debian's rtla 6.1 in the guest, shortened; in it, a thread and an interrupt were added to one wake-up.
+TEST(DoctorTimerlat, TheCulpritIsInTheTraceOfTheLastWakeUp) {
+  const std::string trace =
+      "# tracer: timerlat\n"
+      "          <idle>-0     [000] d..h1..     4.637306: #1136  context    irq timer_latency       601 ns\n"
+      "          <idle>-0     [000] dn.h2..     4.637315: irq_noise: old:99 start 4.637305255 duration 9000 ns\n"
+      "      timerlat/0-151   [000] .......     4.637318: #1136  context thread timer_latency     12000 ns\n"
+      "          <idle>-0     [000] d..h1..     4.638306: #1137  context    irq timer_latency       701 ns\n"
+      "          <idle>-0     [000] dn.h2..     4.638315: irq_noise: local_timer:236 start 4.638305255 duration 9569 "
+      "ns\n"
+      "          <idle>-0     [000] d...3..     4.638317: thread_noise: kworker/0:1:33 start 4.638315676 duration "
+      "21842 ns\n"
+      "          <idle>-0     [000] d...3..     4.638319: softirq_noise:    TIMER:1 start 4.638316 duration 1500 ns\n"
+      "          <idle>-0     [000] d...3..     4.638320: nmi_noise: start 4.638317 duration 600 ns\n"
+      "      timerlat/0-151   [000] .......     4.638342: #1137  context thread timer_latency     36975 ns\n"
+      "      timerlat/0-151   [000] d..h2..     4.638361: irq_noise: irq_work:246 start 4.638358814 duration 1463 ns\n";
+  EXPECT_EQ(delayed_by(trace),
+            "37 us late, the timer's interrupt 1 us; thread kworker/0:1:33 took 22 us; interrupt local_timer:236 took "
+            "10 us; softirq TIMER:1 took 2 us");
+  EXPECT_EQ(delayed_by("# tracer: timerlat\n"), "");
+  EXPECT_EQ(delayed_by(""), "");
 }
 
 TEST(DoctorLoad, EndsByItselfAndIsNotRealTime) {
