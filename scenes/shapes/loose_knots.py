@@ -141,18 +141,27 @@ def text_of(knot, length_m):
     return "\n".join(lines + ["%.6f,%.6f,%.6f" % p for p in loose(knot, length_m)]) + "\n"
 
 
+def is_same(text, other):
+    """Whether two texts have the same points within 2 um: Python and the C library round differently from version to version."""
+    ours, theirs = text.splitlines(), other.splitlines()
+    if ours[:2] != theirs[:2] or len(ours) != len(theirs):
+        return False
+    pairs = zip(",".join(ours[2:]).split(","), ",".join(theirs[2:]).split(","))
+    return all(abs(float(a) - float(b)) < 2e-6 for a, b in pairs)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("knot", metavar="KNOT", help="figure-eight, square, granny, surgeons or throws=5,-3,3")
     parser.add_argument("--length", type=float, default=0.3, metavar="M", help="of the thread [0.3]")
     parser.add_argument("--out", type=pathlib.Path, help="CSV to write [stdout]")
-    parser.add_argument("--check", action="store_true", help="only compare with --out")
+    parser.add_argument("--check", action="store_true", help="only compare with --out, within 2 um")
     a = parser.parse_args()
     text = text_of(a.knot, a.length)
     if a.out is None:
         sys.stdout.write(text)
     elif a.check:
-        return 0 if a.out.read_text() == text else 1
+        return 0 if is_same(text, a.out.read_text()) else 1
     else:
         a.out.write_text(text)
     return 0
