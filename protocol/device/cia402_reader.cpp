@@ -1,5 +1,6 @@
 #include "protocol/device/cia402_reader.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <cstdlib>
@@ -126,6 +127,15 @@ void check_optional(StrictTable& t, const Cia402Profile& p) {
   }
 }
 
+/// What commands a drive is for the loop alone: written at start-up, it could move a hand before anything was checked.
+void check_writes(StrictTable& t, const Cia402Profile& p) {
+  constexpr std::array<std::uint16_t, 10> kCommands{0x6040, 0x6042, 0x6060, 0x6071, 0x607A,
+                                                    0x60B0, 0x60B1, 0x60B2, 0x60FE, 0x60FF};
+  for (const auto& write : p.writes)
+    if (std::ranges::find(kCommands, write.object.index) != kCommands.end())
+      t.refuse("writes", "no controlword, mode, set point, offset or output (" + text_of(write.object) + ")");
+}
+
 }  // namespace
 
 void read_cia402(StrictTable& t, Cia402Profile& p) {
@@ -147,6 +157,7 @@ void read_cia402(StrictTable& t, Cia402Profile& p) {
   if (t.failed()) return;
   check_buttons(t, p.buttons, p.pdos);
   check_optional(t, p);
+  check_writes(t, p);
 }
 
 }  // namespace ligature::device

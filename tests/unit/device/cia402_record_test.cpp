@@ -88,6 +88,8 @@ TEST(Cia402Record, RefusesInOneLine) {
       {{"0x1800:03=0/2", "0x1800:03=0/3"}, "object=value/bytes"},
       {{"0x1800:03=0/2", "0x1800:03=70000/2"}, "object=value/bytes"},
       {{"0x1800:03=0/2", "0x1800:03"}, "object=value/bytes"},
+      {{"0x1800:03=0/2", "0x6071:00=900/2"}, "no controlword, mode, set point, offset or output (0x6071:00)"},
+      {{"0x1800:03=0/2", "0x6040:00=15/2"}, "(0x6040:00)"},
       {{"value = 4096", "value = 4097"}, "a multiple of cia402.counts_unit"},
   };
   for (const auto& [change, wanted] : bad) {
