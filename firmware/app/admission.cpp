@@ -50,16 +50,28 @@ std::string knots_table(const std::vector<DrawnKnot>& knots) {
   return text;
 }
 
+std::string drivers_text(const DriverTime& driver) {
+  if (driver.interfaces.empty()) return "a driver's own time not known (--can)";
+  std::string names;
+  for (const auto& name : driver.interfaces) names += (names.empty() ? "" : ", ") + name;
+  char text[160];
+  std::snprintf(text, sizeof text, "%.1f of them in the drivers of %s, whose delay of %.0f us counts twice",
+                driver.calls_us, names.c_str(), driver.delay_us);
+  return text;
+}
+
 }  // namespace
 
 Admission admit(const scene::Scene& scene, const AdmissionSettings& settings) {
   Admission result;
   result.budget_percent = settings.budget_percent;
   result.bus = platform::bus_time_of(settings.device);
+  result.driver = settings.driver;
   std::thread([&] {  // on the run's core, but without real-time priority: this computes for seconds
     if (settings.core != kAnyCore) platform::stay_on(settings.core);
     platform::flush_denormals();
     result.loop = measure_loop(scene, settings.device);
+    result.loop.calls_us += settings.driver.calls_us;
     result.thread = measure_thread(scene, given_us(result.bus, result.loop), settings.seconds);
     if (settings.draw_knots) result.knots = draw_knots(scene, result.thread);
   })
@@ -75,17 +87,17 @@ std::string table(const Admission& a) {
                 "period 1000 us\n"
                 "  loop                        us    %% of period\n"
                 "  SYNC to last TPDO       %7.1f  %8.1f   waiting, by the length of the frames\n"
-                "  calls to both buses     %7.1f  %8.1f   on a local socket; a driver's own time not known\n"
+                "  calls to both buses     %7.1f  %8.1f   on a local socket; %s\n"
                 "  control law and record  %7.1f  %8.1f\n"
                 "  computing               %7.1f  %8.1f   allowed %.1f us (--budget %.0f %%)\n"
                 "  torques to next SYNC    %7.1f  %8.1f   on the bus\n"
                 "  thread, also while the loop waits\n"
                 "  has                     %7.1f  %8.1f\n"
                 "  worst tick of %-5d     %7.1f  %8.1f   up to %d contacts%s%s\n",
-                bus_us, share(bus_us), a.loop.calls_us, share(a.loop.calls_us), a.loop.control_us,
-                share(a.loop.control_us), a.computing_us(), share(a.computing_us()), a.budget_us(), a.budget_percent,
-                torques_us, share(torques_us), a.thread.given_us, share(a.thread.given_us), a.thread.ticks,
-                a.thread.worst_us, share(a.thread.worst_us), a.thread.most_contacts,
+                bus_us, share(bus_us), a.loop.calls_us, share(a.loop.calls_us), drivers_text(a.driver).c_str(),
+                a.loop.control_us, share(a.loop.control_us), a.computing_us(), share(a.computing_us()), a.budget_us(),
+                a.budget_percent, torques_us, share(torques_us), a.thread.given_us, share(a.thread.given_us),
+                a.thread.ticks, a.thread.worst_us, share(a.thread.worst_us), a.thread.most_contacts,
                 a.thread.contact_cap_hit ? ", not all of them solved" : "",
                 a.thread.ended_by_clock ? "; ended by the clock" : "");
   std::string all = text;

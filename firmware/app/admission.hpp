@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "firmware/app/drawn_knot.hpp"
+#include "firmware/app/driver_time.hpp"
 #include "firmware/app/meter.hpp"
 #include "firmware/app/options.hpp"
 #include "firmware/rt/bus_time.hpp"
@@ -22,10 +23,11 @@ struct Admission {
   std::vector<DrawnKnot> knots;  ///< empty: not measured
   double budget_percent = kDefaultBudget_percent;
   rt::BusTime bus;
+  DriverTime driver{};  ///< its calls are in loop.calls_us
   [[nodiscard]] double computing_us() const noexcept { return loop.control_us + loop.calls_us; }
-  /// Time allowed for the loop's computing: the budget, but no more than the bus traffic leaves.
+  /// Time allowed for the loop's computing: the budget, but no more than bus traffic and drivers leave.
   [[nodiscard]] double budget_us() const noexcept {
-    return std::min(10.0 * budget_percent, 1e-3 * static_cast<double>(bus.most_work().count()));
+    return std::min(10.0 * budget_percent, 1e-3 * static_cast<double>(bus.most_work().count()) - driver.delays_us());
   }
   /// Whether the loop's work (control law, record, bus calls) fits the budget. The physics needs no check: it stops at
   /// its deadline and cannot delay the loop.
@@ -41,6 +43,7 @@ struct AdmissionSettings {
   double budget_percent = kDefaultBudget_percent;
   bool draw_knots = false;
   device::Device device = device::omni();  ///< its drives determine how long the bus takes
+  DriverTime driver{};                     ///< of the CAN interfaces, if they were measured
 };
 
 /// @param scene  a scene that physics::Simulation::make() accepts. If the scene sets no `suture.work_instructions`,

@@ -47,7 +47,13 @@ int admit_scene(const AdmitOptions& options) {
     return refusal->exit_code;
   }
   const auto& [scene, device] = std::tie(std::get<Plan>(planned).scene, std::get<Plan>(planned).device);
-  const AdmissionSettings settings{options.seconds, platform::realtime_core(), options.budget_percent, true, device};
+  const auto drivers = measure_drivers(options.can, device);
+  if (const auto* why = std::get_if<std::string>(&drivers)) {
+    std::fprintf(stderr, "ligature-firmware: %s\n", why->c_str());
+    return 2;
+  }
+  const AdmissionSettings settings{options.seconds, platform::realtime_core(),    options.budget_percent, true,
+                                   device,          std::get<DriverTime>(drivers)};
   const Admission admission = admit(scene, settings);
   std::fputs(table(admission).c_str(), stdout);
   const auto objection = objection_of(admission, options.no_loss_m_per_s);

@@ -15,9 +15,11 @@ namespace {
 constexpr int kTicks = 20;
 constexpr int kRepeats = 3;
 
-void drain(platform::CanBus& bus) noexcept {
-  for (can::Frame frame; bus.receive(frame) == platform::Receive::kFrame;) {
-  }
+/// @return the number of frames
+int drain(platform::CanBus& bus) noexcept {
+  int frames = 0;
+  for (can::Frame frame; bus.receive(frame) == platform::Receive::kFrame;) ++frames;
+  return frames;
 }
 
 /// All that a tick does for one hand.
@@ -55,6 +57,17 @@ double bus_calls_us(const device::Device& device) {
     worst_us = std::max(worst_us, least_us);
   }
   return worst_us;
+}
+
+int exchanges_per_tick(const device::Device& device) {
+  std::array<int, 2> ends{};
+  if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends.data()) != 0) return 0;
+  platform::SocketBus ours(ends[0]), theirs(ends[1]);
+  const auto drives = platform::make_drives(ours, device, 20, 0);
+  const auto samples = drives->example_samples();
+  for (const can::Frame& sample : samples) theirs.send(sample);
+  exchange(*drives);
+  return std::max(drain(theirs), static_cast<int>(samples.size()));
 }
 
 }  // namespace ligature::app

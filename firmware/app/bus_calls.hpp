@@ -9,4 +9,7 @@ namespace ligature::app {
 /// result is the largest over all ticks. A CAN driver's own time is not included.
 [[nodiscard]] double bus_calls_us(const device::Device& device);
 
+/// The larger of the numbers of frames that a hand's exchange of one tick sends and receives.
+[[nodiscard]] int exchanges_per_tick(const device::Device& device);
+
 }  // namespace ligature::app

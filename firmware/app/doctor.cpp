@@ -24,6 +24,7 @@
 #include "firmware/app/drive_checks.hpp"
 #include "firmware/app/rig_setup.hpp"
 #include "firmware/platform/core_checks.hpp"
+#include "firmware/platform/idle_guard.hpp"
 #include "firmware/platform/monotonic_clock.hpp"
 #include "firmware/platform/realtime.hpp"
 
@@ -119,6 +120,7 @@ std::variant<double, Refusal> slack_of(const DoctorOptions& options, int core) {
   RunOptions like_run;
   like_run.scene = options.scene;
   like_run.device = options.device;
+  like_run.accept_no_drive_watchdog = true;  // nothing is moved here
   const auto planned = make_plan(like_run);
   if (const auto* refusal = std::get_if<Refusal>(&planned)) return *refusal;
   const auto& plan = std::get<Plan>(planned);
@@ -127,6 +129,12 @@ std::variant<double, Refusal> slack_of(const DoctorOptions& options, int core) {
   settings.device = plan.device;
   const auto found = admit(plan.scene, settings);
   return std::chrono::duration<double, std::micro>(found.bus.most_work()).count() - found.computing_us();
+}
+
+std::string seconds_text(double seconds) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.0f s", seconds);
+  return text;
 }
 
 Check gaps_row(const std::string& found) {
@@ -241,7 +249,14 @@ void measure(const DoctorOptions& options, DoctorReport& report) {
       rows.push_back(echo_row(report.can.back()));
     }
   std::fprintf(stderr, "measuring wake-ups for %.0f s%s ..\n", options.duration_s(), load ? " under load" : "");
+  const platform::IdleGuard awake;  // as in a run
   const Latency latency = measure_wakeups(options.duration_s(), report.core);
+  if (load && load->running() < static_cast<int>(report.load.size()))
+    rows.push_back({Grade::kWarn, "load", "a part of the load ended before the measurement", {}});
+  if (g_stop)
+    rows.push_back({Grade::kWarn, "measured",
+                    seconds_text(latency.seconds) + " of " + seconds_text(options.duration_s()),
+                    "let it run to its end"});
   report.wakeup = latency.fine;
   report.seconds = latency.seconds;
   for (const auto& late : latency.worst)
@@ -250,7 +265,7 @@ void measure(const DoctorOptions& options, DoctorReport& report) {
     // As late as half of the worst: that will happen again soon
     const double least_us = latency.fine.max_us() / 2, seconds = std::min(kCulprit_s, options.duration_s());
     std::fprintf(stderr, "looking for what delays a wake-up by %.0f us, for %.0f s at most ..\n", least_us, seconds);
-    report.delayed_by = look_for_culprit(report.core, least_us, seconds);
+    report.delayed_by = look_for_culprit(report.core, platform::kLoopPriority, least_us, seconds);
   }
   for (const auto& r : latency.refusals) rows.push_back({Grade::kFail, "rights", r, {}});
   rows.push_back(report.slack_us ? judge(latency.fine, *report.slack_us) : judge(latency.wakeup));

@@ -138,6 +138,7 @@ are taken as they are.
 Examples:
   ligature-firmware admit --scene scenes/suture-3-0.toml
   ligature-firmware admit --scene scenes/suture-3-0-square.toml --no-loss 0.25
+  ligature-firmware admit --scene scenes/suture-3-0.toml --can can0 --can can1      (while no rig runs)
 
 Exit: 0 admitted, 2 bad usage or bad scene, 3 the loop is too slow, or --no-loss is not met.)";
 
@@ -145,9 +146,9 @@ constexpr const char* kDoctorHelp =
     R"(One row a check, with the command that mends what is wrong; then the loop's wake-ups without its work. Run it as
 the user that will run the rig, with the machine loaded as it will be.
 
-With --hours, --load or --report it is an acceptance test: it also sends empty frames (identifier 0x7FF) on the CAN
-interfaces and times their echo, and looks for gaps that the machine's own firmware makes (tracer hwlat, as root). Do it
-while no rig runs.
+With --hours, --load or --report it is an acceptance test: it also sends empty frames (identifier 0x7C1) on the CAN
+interfaces and times their echo. As root it looks for gaps that the machine's own firmware makes (tracer hwlat), and in
+the end for what delays a wake-up (tracer timerlat, Debian's package rtla). Do it while no rig runs.
 
 Examples:
   ligature-firmware doctor --can can0 --can can1 --seconds 10
@@ -156,12 +157,24 @@ Examples:
 
 Exit: 0 no FAIL, 2 bad usage, 3 at least one FAIL.)";
 
+void add_can(CLI::App& command, std::vector<std::string>& can, const char* meaning) {
+  command.add_option("--can", can, meaning)->allow_extra_args(false)->check([](const std::string& name) {
+    const bool good = !name.empty() && name.size() < 16 &&
+                      name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.-") ==
+                          std::string::npos &&
+                      name[0] != '-';
+    return good ? std::string() : "found '" + name + "', allowed the name of a network interface";
+  });
+}
+
 void add_admit(CLI::App& admit, AdmitOptions& o) {
   admit.footer(kAdmitHelp);
   add_scene(admit, o.scene, o.overrides);
   add_budget(admit, o.budget_percent);
   add_no_loss(admit, o.no_loss_m_per_s);
   admit.add_option("--device", o.device, "device record (TOML) whose drives are on the buses; default: omni-class");
+  add_can(admit, o.can,
+          "SocketCAN interface whose driver's time counts, may be given again; sends frames on it for 1 s");
   admit.add_option("--seconds", o.seconds, "how long to try")->check(within(0.1, 3600.0))->capture_default_str();
 }
 
@@ -193,15 +206,7 @@ void add_doctor(CLI::App& doctor, DoctorOptions& o) {
   doctor.add_option("--report", o.report, "JSON file for everything found, with wake-ups in bins of 1 us");
   doctor.add_option("--compare", o.compare, "print two reports side by side, and do nothing else")->expected(2);
   doctor.add_option("--device", o.device, "device record (TOML): also says what its drives cannot promise");
-  doctor.add_option("--can", o.can, "SocketCAN interface to look at, may be given again")
-      ->allow_extra_args(false)
-      ->check([](const std::string& name) {
-        const bool good = !name.empty() && name.size() < 16 &&
-                          name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.-") ==
-                              std::string::npos &&
-                          name[0] != '-';
-        return good ? std::string() : "found '" + name + "', allowed the name of a network interface";
-      });
+  add_can(doctor, o.can, "SocketCAN interface to look at, may be given again");
 }
 
 std::string one_line(std::string text) {

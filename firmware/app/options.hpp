@@ -49,7 +49,8 @@ struct RehearseOptions {
 
 struct AdmitOptions {
   std::string scene;
-  std::string device;  ///< as in RunOptions
+  std::string device;            ///< as in RunOptions
+  std::vector<std::string> can;  ///< CAN interfaces whose drivers' time counts
   std::vector<std::string> overrides;
   double seconds = 3.0;
   double budget_percent = kDefaultBudget_percent;

@@ -148,6 +148,7 @@ class Machine(Guest):
                     r"hardware gaps +(none above|gaps of up to) .*tracer hwlat", r"OK    latest wake-up +\d+ us late, the timer's interrupt \d+ us; .* took"):
             self.assertRegex(rows, row)
         self.assertIn((folder / "doctor.code").read_text().strip(), ("0", "3"), "3: an emulated machine is late")
+        self.assertRegex((folder / "admit.log").read_text(), r"calls to both buses .* [0-9.]+ of them in the drivers of vcan0, can0, whose delay of \d+ us")
         self.assertEqual((folder / "enforce.code").read_text().strip(), "3")
         self.assertRegex((folder / "enforce.log").read_text(), "--rt=enforce: .*(SCHED_FIFO|locked memory)")
 

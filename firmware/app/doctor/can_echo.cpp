@@ -8,16 +8,20 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <vector>
 
+#include "firmware/app/cold_clock.hpp"
 #include "firmware/platform/monotonic_clock.hpp"
 
 namespace ligature::app {
 namespace {
 
-constexpr canid_t kProbe = 0x7FF;
+constexpr canid_t kProbe = 0x7C1;
 constexpr auto kSpacing = std::chrono::milliseconds(2);
 constexpr int kPatience_ms = 10;
 
@@ -49,7 +53,28 @@ bool await(int fd) {
   return poll(&waiting, 1, kPatience_ms) > 0 && read(fd, &frame, sizeof frame) == sizeof frame;
 }
 
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
 }  // namespace
+
+double local_exchange_us() {
+  constexpr int kTimes = 500;
+  std::array<int, 2> ends{};
+  if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends.data()) != 0) return 0.0;
+  std::vector<double> calls_us;
+  const can_frame probe{};
+  for (int i = 0; i < kTimes; ++i) {
+    const double before_us = cpu_us();
+    if (write(ends[0], &probe, sizeof probe) == sizeof probe && await(ends[1]))
+      calls_us.push_back(cpu_us() - before_us);
+  }
+  for (const int fd : ends) close(fd);
+  return calls_us.empty() ? 0.0 : median(calls_us);
+}
 
 CanEcho measure_echo(const std::string& interface, double seconds) {
   CanEcho echo;
@@ -60,6 +85,7 @@ CanEcho measure_echo(const std::string& interface, double seconds) {
     return echo;
   }
   platform::MonotonicClock clock;
+  std::vector<double> calls_us;
   can_frame probe{};
   probe.can_id = kProbe;
   auto due = clock.now();
@@ -67,16 +93,20 @@ CanEcho measure_echo(const std::string& interface, double seconds) {
   for (; due < end; due = std::max(due + kSpacing, clock.now())) {
     clock.sleep_until(due);
     const auto sent = clock.now();
+    const double before_us = cpu_us();
     if (write(fd, &probe, sizeof probe) != sizeof probe) {
       echo.problem = std::strerror(errno);
       break;
     }
-    if (await(fd))
+    if (await(fd)) {
       echo.round_trips.add((clock.now() - sent).count());
-    else
+      calls_us.push_back(cpu_us() - before_us);
+    } else {
       ++echo.lost;
+    }
   }
   close(fd);
+  if (!calls_us.empty()) echo.calls_us = median(calls_us);
   return echo;
 }
 

@@ -51,7 +51,8 @@ std::string look_for_gaps(const std::string& folder, double seconds) {
   if (!has_word(content(folder + "/available_tracers"), "hwlat"))
     return "not looked for: this kernel has no tracer hwlat, or the user may not read its files";
   if (!has_word(content(folder + "/current_tracer"), "nop")) return "not looked for: another tracer is in use";
-  if (!put(folder + "/current_tracer", "hwlat")) return "not looked for: the user may not start the tracer hwlat";
+  if (!put(folder + "/tracing_on", "1") || !put(folder + "/current_tracer", "hwlat"))
+    return "not looked for: the user may not start the tracer hwlat";
   std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
   const auto longest = longest_gap_us(content(folder + "/trace"));
   put(folder + "/current_tracer", "nop");

@@ -1,6 +1,7 @@
 #include "firmware/app/doctor/report.hpp"
 
 #include <cstdio>
+#include <map>
 #include <nlohmann/json.hpp>
 
 namespace ligature::app {
@@ -87,10 +88,30 @@ std::string share(const DoctorReport& r, double us) {
   return number(count > 0 ? 1e6 * static_cast<double>(r.wakeup.from(us)) / count : 0.0, "a million");
 }
 
-std::string found(const DoctorReport& r, const platform::Check& like) {
-  for (const auto& check : r.checks)
-    if (check.what == like.what) return std::string(kGrades[static_cast<std::size_t>(check.grade)]) + " " + check.found;
-  return "not checked";
+/// What both reports say in their n-th row of one name; rows come in the order of `a`, then those that only `b` has.
+std::string rows_of_checks(const DoctorReport& a, const DoctorReport& b) {
+  struct Row {
+    std::string what;
+    std::array<std::string, 2> found{"not checked", "not checked"};
+  };
+  std::vector<Row> rows;
+  for (std::size_t side = 0; side < 2; ++side) {
+    std::map<std::string, std::size_t> seen;  // rows of a name so far
+    for (const auto& check : (side == 0 ? a : b).checks) {
+      std::size_t nth = seen[check.what]++;
+      const auto is_its_row = [&](const Row& row) { return row.what == check.what && nth-- == 0; };
+      auto place = side == 0 ? rows.end() : std::ranges::find_if(rows, is_its_row);
+      if (place == rows.end()) place = rows.insert(rows.end(), Row{check.what});
+      place->found[side] = std::string(kGrades[static_cast<std::size_t>(check.grade)]) + " " + check.found;
+    }
+  }
+  std::string text;
+  for (const Row& each : rows) text += row(each.what.c_str(), each.found[0], each.found[1]);
+  return text;
+}
+
+std::string scene_of(const DoctorReport& r) {
+  return r.scene.empty() ? "none" : r.scene + (r.slack_us ? ", leaves " + number(*r.slack_us, "us") : "");
 }
 
 }  // namespace
@@ -143,8 +164,8 @@ std::string compare(const DoctorReport& a, const std::string& name_a, const Doct
   std::string text =
       row("", name_a, name_b) + row("started", a.started, b.started) + row("kernel", a.kernel, b.kernel) +
       row("cpu", a.cpu, b.cpu) + row("ligature", a.ligature, b.ligature) +
-      row("measured", number(a.seconds, "s"), number(b.seconds, "s")) + row("load", words(a.load), words(b.load));
-  for (const auto& check : a.checks) text += row(check.what.c_str(), found(a, check), found(b, check));
+      row("measured", number(a.seconds, "s"), number(b.seconds, "s")) + row("load", words(a.load), words(b.load)) +
+      row("scene", scene_of(a), scene_of(b)) + rows_of_checks(a, b);
   for (const auto& [name, q] :
        {std::pair{"wake-up p50", 0.5}, {"wake-up p99", 0.99}, {"wake-up p99.9", 0.999}, {"wake-up p99.99", 0.9999}})
     text += row(name, number(a.wakeup.quantile_us(q), "us"), number(b.wakeup.quantile_us(q), "us"));

@@ -24,6 +24,7 @@ struct CanEcho {
   LatencyHistogram round_trips;
   std::uint64_t lost = 0;  ///< did not come back within 10 ms
   std::string problem;     ///< why nothing was measured; empty: it was
+  double calls_us = 0.0;   ///< CPU time of sending and reading one frame, median; not in the report
 };
 
 struct DoctorReport {
@@ -40,7 +41,7 @@ struct DoctorReport {
   LatencyHistogram wakeup;
   std::vector<LateWakeUp> worst;
   std::vector<CanEcho> can;
-  std::string verdict;
+  std::string verdict = "not finished";  ///< until the measurement has ended
 };
 
 [[nodiscard]] std::string to_json(const DoctorReport& report);

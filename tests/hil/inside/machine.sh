@@ -8,6 +8,7 @@ mount -t tracefs tracefs /sys/kernel/tracing
 ip link set can0 up txqueuelen 8 type can bitrate 1000000 sample-point 0.8
 "$LIGATURE_BIN/ligature-firmware" doctor --can vcan0 --can can0 --seconds 2 --report /hil/doctor.json > /hil/doctor.log 2>&1 && code=0 || code=$?
 echo "$code" > /hil/doctor.code
+"$LIGATURE_BIN/ligature-firmware" admit --scene scenes/paper.toml --seconds 0.1 --budget 100 --can vcan0 --can can0 > /hil/admit.log 2>&1 || true
 echo "machine: a real-time rig for nobody"
 chmod 777 /run
 hand left vcan0; hand right vcan1

@@ -70,6 +70,22 @@ TEST(Admission, TheLoopFitsWhateverTheThread) {
   }
 }
 
+/// A CAN driver's calls are computing of the loop, and its delay is taken from the time that the bus leaves.
+TEST(Admission, CountsTheDriversOfTheInterfaces) {
+  AdmissionSettings settings = kQuick;
+  settings.budget_percent = 100.0;  // so that only the bus limits
+  const auto local = admit(paper(20), settings);
+  settings.driver = {.calls_us = 5000.0, .delay_us = 30.0, .interfaces = {"can0"}};
+  const auto with = admit(paper(20), settings);
+  EXPECT_DOUBLE_EQ(with.budget_us(), local.budget_us() - 60.0) << "there and back, for the samples and for the torques";
+  EXPECT_GT(with.computing_us(), 5000.0);
+  EXPECT_TRUE(local.fits());
+  EXPECT_FALSE(with.fits());
+  EXPECT_NE(table(with).find("5000.0 of them in the drivers of can0, whose delay of 30 us counts twice"),
+            std::string::npos)
+      << table(with);
+}
+
 /// Drives with buttons in a frame of their own and frequent heartbeats leave less of the period to loop and physics.
 TEST(Admission, CountsTheBusTimeOfTheRecordsDrives) {
   AdmissionSettings settings = kQuick;

@@ -108,6 +108,28 @@ TEST(DoctorReports, AComparisonMarksWhatDiffers) {
   EXPECT_TRUE(line("can0 round trip").find("70 us") != std::string::npos) << text;
 }
 
+/// Two rows of one name are two rows, and a row that only one report has is shown.
+TEST(DoctorReports, AComparisonHasEveryRowOfBoth) {
+  using platform::Grade;
+  DoctorReport a = some_report(), b = some_report();
+  a.checks = {{Grade::kOk, "CAN", "can0: up", ""}, {Grade::kOk, "CAN", "can1: up", ""}};
+  b.checks = {{Grade::kOk, "CAN", "can0: up", ""},
+              {Grade::kFail, "CAN", "can1: bus-off", ""},
+              {Grade::kFail, "rights", "none", ""}};
+  b.scene = "scenes/suture-3-0.toml";
+  const std::string text = compare(a, "A", b, "B");
+  const auto line_of = [&](const std::string& word) {
+    const auto at = text.find(word);
+    if (at == std::string::npos) return std::string();
+    const auto begin = text.rfind('\n', at) + 1;
+    return text.substr(begin, text.find('\n', at) - begin);
+  };
+  EXPECT_NE(line_of("can1: up").find("FAIL can1: bus-off   *"), std::string::npos) << text;
+  EXPECT_NE(line_of("FAIL none").find("not checked"), std::string::npos) << text;
+  EXPECT_NE(line_of("suture-3-0").find("*"), std::string::npos) << text;
+  EXPECT_EQ(line_of("can0: up").find("*"), std::string::npos) << text;
+}
+
 TEST(DoctorHwlat, TheLongestGapIsFoundInTheTrace) {
   const char* trace =
       "# tracer: hwlat\n#\n"
@@ -141,6 +163,15 @@ TEST(DoctorTimerlat, TheCulpritIsInTheTraceOfTheLastWakeUp) {
             "37 us late, the timer's interrupt 1 us; thread kworker/0:1:33 took 22 us; interrupt local_timer:236 took "
             "10 us; softirq TIMER:1 took 2 us");
   EXPECT_EQ(delayed_by("# tracer: timerlat\n"), "");
+  const std::string stack =
+      "      timerlat/0-151   [000] ....1..     4.638362: <stack trace>\n => timerlat_irq\n => __hrtimer_run_queues\n"
+      " => hrtimer_interrupt\n => asm_sysvec_apic_timer_interrupt\n => native_safe_halt\n => do_idle\n";
+  EXPECT_EQ(delayed_by(trace + stack), delayed_by(trace)) << "the interrupt itself was in time";
+  const std::string late_interrupt =
+      "          <idle>-0     [000] d..h1..     5.638306: #2137  context    irq timer_latency     90000 ns\n";
+  EXPECT_EQ(delayed_by(trace + late_interrupt + stack),
+            "90 us late, the timer's interrupt 90 us, the thread not yet awake (it interrupted native_safe_halt)")
+      << "newer versions of rtla stop here";
   EXPECT_EQ(delayed_by(""), "");
 }
 
