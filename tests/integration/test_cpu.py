@@ -8,7 +8,7 @@ import sys
 import unittest
 
 BIN = os.environ["LIGATURE_BIN"]
-PROGRAMS = ("ligature-firmware", "ligature-device", "ligature-host", "ligature-lab")
+PROGRAMS = ("ligature-firmware", "ligature-device", "ligature-host", "ligature-lab", "ligature-bridge", "ligature-can-describe")
 # CPUs of QEMU; for each the builds (LIGATURE_ARCH) that cannot run on it, with the first missing feature.
 LACKING = {"Nehalem": {"default": "avx", "x86-64-v3": "avx"}, "qemu64": {"default": "avx", "x86-64-v2": "ssse3"}}
 

@@ -73,20 +73,25 @@ TEST(EncoderWatch, AJointInItsStopIsNoFault) {
   EXPECT_EQ(watch(stop, 300, {true, false, true}).first, Fault::kNone);
 }
 
-/// Twenty minutes of normal hand motions; docs/measurements/encoder-watch.md reports a hundred hours without an alarm.
+/// Twenty minutes of normal hand motions. In 300 hours of them, 60 of abrupt ones, there was one false alarm, at an
+/// abrupt hand (docs/measurements/encoder-watch.md). So one in four minutes of abrupt hands happens in a run of 900,
+/// and two in a run of a million.
 TEST(EncoderWatch, HandsThatTurnStopAndTrembleAreNotSuspected) {
   test::Random random(23);
   for (const auto kind : test::HonestHand::kKinds) {
+    int alarms = 0;
     double most = 0.0;
     for (int run = 0; run < 48; ++run) {
       test::HonestHand hand(kind, random());
       EncoderWatch w;
-      for (int t = 0; t < 5000; ++t) {
-        ASSERT_EQ(w.add(hand.next(), 1, kFree), Fault::kNone)
-            << test::HonestHand::name(kind) << ", run " << run << " at " << t;
+      bool is_suspected = false;
+      for (int t = 0; t < 5000 && !is_suspected; ++t) {
+        is_suspected = w.add(hand.next(), 1, kFree) != Fault::kNone;
         most = std::max(most, w.reversal(kFree));
       }
+      alarms += is_suspected ? 1 : 0;
     }
+    EXPECT_LE(alarms, kind == test::HonestHand::Kind::kAbrupt ? 1 : 0) << test::HonestHand::name(kind);
     std::printf("%s: up to %.2f of a reversal\n", test::HonestHand::name(kind), most);
   }
 }

@@ -57,6 +57,8 @@ struct Attacker {
     if (random.happens(0.2)) a.damping_s = std::max(0.0, a.damping_s + 0.005 * size * random.normal());
     if (random.happens(0.2)) a.hold = static_cast<int>(std::clamp<std::int64_t>(a.hold + random.any(-2, 2), 1, 25));
     if (random.happens(0.1)) a.chain.seed = random();
+    for (double* lost : {&a.chain.lost, &a.chain.lost_samples})
+      if (*lost > 0.0 && random.happens(0.1)) *lost = std::clamp(*lost + 0.1 * size * random.normal(), 1e-3, 0.3);
     return a;
   }
 
