@@ -27,7 +27,8 @@ struct Admission {
   [[nodiscard]] double computing_us() const noexcept { return loop.control_us + loop.calls_us; }
   /// Time allowed for the loop's computing: the budget, but no more than bus traffic and drivers leave.
   [[nodiscard]] double budget_us() const noexcept {
-    return std::min(10.0 * budget_percent, 1e-3 * static_cast<double>(bus.most_work().count()) - driver.delays_us());
+    const double bus_leaves_us = 1e-3 * static_cast<double>(bus.most_work().count()) - driver.delays_us();
+    return std::max(0.0, std::min(10.0 * budget_percent, bus_leaves_us));
   }
   /// Whether the loop's work (control law, record, bus calls) fits the budget. The physics needs no check: it stops at
   /// its deadline and cannot delay the loop.

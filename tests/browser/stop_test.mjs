@@ -15,6 +15,8 @@ const view = new Program(host, ['view', '--port', '0', '--recordings', out]);
 const own = new URL(await view.says(/open (\S+)/));
 const saboteur = await Saboteur.between(own.host);
 const CORE = ['guard.js', 'main.js', 'link.js', 'frame.js', 'names.js', 'numbers.js', 'state_panel.js', 'controls.js'];
+// The flat view, and what makes the parts of the page.
+const DRAW_THE_THREAD = ['flat_view.js', 'colouring.js', 'scene_facts.js', 'throws.js', 'panels.js', 'part.js', 'part_list.js', 'trace_store.js'];
 let failures = 0, cases = 0, arms = 0;
 
 /** Opens the page on a rig in FORCE, checks its state display, and stops. @param file the broken file, or null. */
@@ -75,7 +77,7 @@ for (const webgl of [false, true]) {
     const ways = kind === 'firefox' || file.includes('three') || file.includes('uPlot') ? ['load'] : waysFor(readFileSync(join(pageFolder, file), 'utf8'));
     for (const way of ways) {
       saboteur.breaks(file, way);
-      await stops(browser, `${file} throws, ${way}`, file, (page) => tells(page, file));
+      await stops(browser, `${file} throws, ${way}`, file, (page) => tells(page, file, webgl));
     }
   }
   saboteur.breaks(null);
@@ -153,17 +155,28 @@ function outside() {
   return wrong;
 }
 
+/** Waits until the flat view shows the thread. */
+async function isDrawn(page) {
+  for (const until_ms = Date.now() + 60_000; await page.evaluate(inked) <= 200;) {
+    if (Date.now() > until_ms) throw new Error('the thread is not drawn in the flat view');
+    await new Promise((resolve) => setTimeout(resolve, 50));
+  }
+}
+
 /** Number of pixels of the flat view with about the thread's colour. */
 function inked() {
-  const canvas = document.getElementById('flat'), { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+  const canvas = document.getElementById('flat');
+  if (!canvas?.width || !canvas.height) return 0;
+  const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
   let count = 0;
   for (let i = 0; i < data.length; i += 4) if (data[i] > 200 && data[i + 1] > 150 && data[i + 2] < 200 && data[i] > data[i + 2] + 40) ++count;
   return count;
 }
 
-/** Checks that the broken part reports its error and that the rest of the page still works. */
-async function tells(page, file) {
+/** Checks that an error is shown and, without WebGL, that the thread is still drawn unless the broken file draws it. */
+async function tells(page, file, webgl) {
   if (CORE.includes(file)) return;
+  if (!webgl && !DRAW_THE_THREAD.includes(file)) await isDrawn(page);
   await until(page, () => document.querySelector('.part-note:not([hidden])') || Object.keys(window.ligature?.troubles ?? {}).length);
 }
 

@@ -23,7 +23,11 @@ function pictures(panels) {
       if (status) value.setForce(status.max_force_N);
       if (scene !== undefined) value.setFacts(scene);
     },
-    update: (value) => { if (isWanted(key)) panels.parts.sceneTools.run((t) => t.showLegend(value.update(latest.shape, latest.now, latest.knot))); },
+    update: (value) => {
+      if (!isWanted(key)) return;
+      const legend = value.update(latest.shape, latest.now, latest.knot); // not inside run(): each part fails for itself
+      panels.parts.sceneTools.run((t) => t.showLegend(legend));
+    },
     draw: (value, time) => {
       value.show(isWanted(key));
       if (!isWanted(key)) return;
@@ -62,7 +66,8 @@ function knots(panels) {
 function showKnot(panels, value, knot) {
   const { latest } = panels, period_s = panels.period_s;
   if (latest.isReplay && Math.abs(latest.now.tick - knot.tick) * period_s > 1) return; // belongs to the time before the jump; the next one follows soon
-  if (latest.isReplay) panels.parts.replay.run((bar) => value.seed(bar.knotsUntil(knot.tick, period_s)));
+  const earlier = latest.isReplay && panels.parts.replay.run((bar) => bar.knotsUntil(knot.tick, period_s));
+  if (earlier) value.seed(earlier);
   value.update(knot, period_s);
 }
 
