@@ -24,6 +24,8 @@ def read(path):
         report = json.load(file)
     if not isinstance(report, dict) or report.get("format") != FORMAT:
         raise ValueError(f"{path}: found no report of 'ligature-firmware doctor --report'")
+    if not report["wakeup"]["count"]:
+        raise ValueError(f"{path}: no wake-up was measured; its verdict is '{report['verdict']}'")
     return report
 
 

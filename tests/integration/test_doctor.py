@@ -1,0 +1,60 @@
+"""`ligature-firmware doctor` as a program: a report is written, compared and plotted; one that was cut short says so."""
+
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+BIN = pathlib.Path(os.environ["LIGATURE_BIN"])
+
+
+def run(program, *arguments):
+    return subprocess.run([BIN / program, *map(str, arguments)], capture_output=True, text=True, timeout=120)
+
+
+class Doctor(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def plot(self, *reports):
+        return run("ligature-host", "plot", reports[0], "--latency", *(("--beside", reports[1]) if len(reports) > 1 else ()),
+                   "--out", self.folder / "latency.png")
+
+    def test_a_report_is_compared_and_plotted(self):
+        report = self.folder / "a.json"
+        told = run("ligature-firmware", "doctor", "--seconds", 0.3, "--report", report)
+        self.assertIn(told.returncode, (0, 3), told.stderr)
+        self.assertIn("latest wake-up", told.stdout)
+        self.assertGreater(json.loads(report.read_text())["wakeup"]["count"], 0)
+        self.assertNotIn("   *", run("ligature-firmware", "doctor", "--compare", report, report).stdout, "equal reports differ nowhere")
+        drawn = self.plot(report, report)
+        self.assertEqual(drawn.returncode, 0, drawn.stderr)
+        self.assertEqual((self.folder / "latency.png").read_bytes()[1:4], b"PNG")
+
+    def test_a_run_that_was_ended_says_so(self):
+        report = self.folder / "b.json"
+        command = [BIN / "ligature-firmware", "doctor", "--seconds", "60", "--report", report]
+        doctor = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.assertIn("measuring wake-ups", next(line for line in doctor.stderr if "measuring" in line))
+        time.sleep(0.3)
+        doctor.send_signal(signal.SIGINT)
+        told, _ = doctor.communicate(timeout=120)
+        self.assertRegex(told, r"WARN  measured +\d+ s of 60 s")
+
+    def test_a_report_without_a_measurement_is_not_plotted(self):
+        report = self.folder / "c.json"
+        run("ligature-firmware", "doctor", "--seconds", 0, "--report", report)
+        drawn = self.plot(report)
+        self.assertNotEqual(drawn.returncode, 0)
+        self.assertIn("no wake-up was measured", drawn.stderr)
+        self.assertFalse((self.folder / "latency.png").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
