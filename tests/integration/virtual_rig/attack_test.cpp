@@ -100,7 +100,7 @@ TEST(RandomAttack, EveryForceIsWithinItsPromiseOrItsCauseIsNamed) {
   print(all);
   if (runs < 30) return;  // a single seed is being examined
   EXPECT_GT(all.pushed, all.runs / 3) << "an attack on a rig that does not push says nothing";
-  EXPECT_GT(all.lying, all.runs / 10);
+  EXPECT_GT(all.lying, 0) << "36 of 100 attacks are of this kind, so none of 40 happens once in 50 million";
 }
 
 }  // namespace
