@@ -327,8 +327,9 @@ int doctor(const DoctorOptions& options) {
   const platform::Machine machine{"/", ip_details};
   report.checks = platform::check_machine(machine, report.core);
   for (auto& c : platform::check_core(machine, report.core)) report.checks.push_back(std::move(c));
+  const bool fd = !options.device.empty() && need_fd(options.device);
   for (const auto& interface : options.can)
-    for (auto& c : platform::check_can(machine, interface, report.core)) report.checks.push_back(std::move(c));
+    for (auto& c : platform::check_can(machine, interface, report.core, fd)) report.checks.push_back(std::move(c));
   for (auto& c : std::get<0>(drives)) report.checks.push_back(std::move(c));
   std::printf("core of the loop: %d\n", report.core);
   std::fputs(table(report.checks).c_str(), stdout);

@@ -20,4 +20,10 @@ std::variant<std::vector<platform::Check>, std::string> drive_checks(const std::
   return rows;
 }
 
+bool need_fd(const std::string& device_file) {
+  const auto loaded = device::load_device(device_file);
+  const auto* const device = std::get_if<device::Device>(&loaded);
+  return device != nullptr && platform::network_of(*device) == can::Network::kFd;
+}
+
 }  // namespace ligature::app

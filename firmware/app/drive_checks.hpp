@@ -12,4 +12,7 @@ namespace ligature::app {
 /// such as a watchdog. @return the rows, or one line of text if the record cannot be read.
 [[nodiscard]] std::variant<std::vector<platform::Check>, std::string> drive_checks(const std::string& device_file);
 
+/// Whether the drives of a record that can be read speak CAN FD.
+[[nodiscard]] bool need_fd(const std::string& device_file);
+
 }  // namespace ligature::app

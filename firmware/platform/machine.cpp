@@ -223,7 +223,9 @@ std::vector<Check> check_machine(const Machine& machine, int core) {
           receive_buffer(root)};
 }
 
-std::vector<Check> check_can(const Machine& machine, const std::string& interface, int core) {
+constexpr double kFdDataRate = 5e6;
+
+std::vector<Check> check_can(const Machine& machine, const std::string& interface, int core, bool needs_fd) {
   const std::string folder = machine.root + "sys/class/net/" + interface;
   if (!fs::exists(folder)) return {{Grade::kFail, "CAN", interface + ": no such interface", "ip link show type can"}};
   std::vector<Check> checks;
@@ -235,7 +237,8 @@ std::vector<Check> check_can(const Machine& machine, const std::string& interfac
                    : off      ? Check{Grade::kFail, "CAN", interface + ": bus-off",
                                  "find the cause, then: " + set + " down && " + set + " up"}
                               : Check{Grade::kFail, "CAN", interface + ": down", set + " up"});
-  if (details.find("vcan") != std::string::npos) {
+  const bool is_virtual = details.find("vcan") != std::string::npos;
+  if (is_virtual) {
     checks.push_back(good("CAN bit rate", interface + ": virtual, has none"));
   } else {
     const double rate = number_after(details, " bitrate "), point = number_after(details, " sample-point ");
@@ -244,6 +247,14 @@ std::vector<Check> check_can(const Machine& machine, const std::string& interfac
     const bool fine = rate == 1e6 && point >= 0.75 && point <= 0.875;
     checks.push_back({fine ? Grade::kOk : Grade::kFail, "CAN bit rate", found.str(),
                       fine ? "" : set + " down && " + set + " up type can bitrate 1000000 sample-point 0.8"});
+  }
+  if (needs_fd) {
+    const double rate = is_virtual ? kFdDataRate : number_after(details, " dbitrate ");
+    const bool fine = text_of(folder + "/mtu") == "72" && rate == kFdDataRate;
+    std::ostringstream found;
+    found << interface << (fine ? ": " : ": not on, or another rate than 5e+06; found ") << rate << " bit/s for data";
+    checks.push_back({fine ? Grade::kOk : Grade::kFail, "CAN FD", found.str(),
+                      fine ? "" : set + " down && " + set + " up type can bitrate 1000000 dbitrate 5000000 fd on"});
   }
   // A period has up to six frames. In a longer queue, frames would wait on a busy bus, become outdated, and still reset
   // the drives' watchdogs.

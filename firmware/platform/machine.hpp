@@ -26,7 +26,9 @@ struct Machine {
 [[nodiscard]] std::vector<Check> check_machine(const Machine& machine, int core);
 
 /// Checks of a CAN interface: up, 1 Mbit/s, sample point 75 .. 87.5 %, queue length, interrupts not on the core.
-[[nodiscard]] std::vector<Check> check_can(const Machine& machine, const std::string& interface, int core);
+/// @param needs_fd whether the drives speak CAN FD, with 5 Mbit/s for the data
+[[nodiscard]] std::vector<Check> check_can(const Machine& machine, const std::string& interface, int core,
+                                           bool needs_fd = false);
 
 /// Whether a core list in the kernel's format ("0,2-5") contains a core.
 [[nodiscard]] bool list_holds(const std::string& list, int core);

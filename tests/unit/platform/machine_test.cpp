@@ -124,6 +124,21 @@ TEST_F(MachineTest, CanInterfaces) {
   EXPECT_EQ(grade(check_can(machine, "can0", 1), "CAN queue"), Grade::kWarn);
 }
 
+TEST_F(MachineTest, DrivesThatSpeakFdNeedItsDataRate) {
+  put("sys/class/net/can0/flags", "0x40081");
+  put("sys/class/net/can0/mtu", "72");
+  details =
+      "can <FD> state ERROR-ACTIVE \n bitrate 1000000 sample-point 0.800 \n dbitrate 5000000 dsample-point 0.75\n";
+  EXPECT_EQ(grade(check_can(machine, "can0", 1, true), "CAN FD"), Grade::kOk);
+  details =
+      "can <FD> state ERROR-ACTIVE \n bitrate 1000000 sample-point 0.800 \n dbitrate 2000000 dsample-point 0.75\n";
+  EXPECT_EQ(grade(check_can(machine, "can0", 1, true), "CAN FD"), Grade::kFail);
+  put("sys/class/net/can0/mtu", "16");
+  details = "can state ERROR-ACTIVE \n bitrate 1000000 sample-point 0.800 \n";
+  EXPECT_EQ(grade(check_can(machine, "can0", 1, true), "CAN FD"), Grade::kFail);
+  for (const auto& check : check_can(machine, "can0", 1)) EXPECT_NE(check.what, "CAN FD");
+}
+
 TEST(Machine, ReadsCoreListsAndRoutes) {
   EXPECT_TRUE(list_holds("0,2-5", 4));
   EXPECT_FALSE(list_holds("0,2-5", 1));
