@@ -13,8 +13,10 @@
 namespace ligature::published {
 namespace {
 
-/// Runs a case's quick form. Every judged figure must hold, except those named in `missed`. These must miss: they are
-/// explained in docs/measurements/published.md, and when one of them holds, that page must be changed.
+/// Runs a case's quick form. Every judged figure must hold, except those named in `missed`, which
+/// docs/measurements/published.md explains. When one of these holds by a margin, that page must be changed; one near
+/// its tolerance holds with one compiler and misses with another (a turn round a peg: 2.5 % with GCC 12, 1.7 % with GCC
+/// 14).
 validate::Findings expect_met(const std::string& name, const std::set<std::string>& missed = {},
                               scene::Accuracy accuracy = scene::Accuracy::kBalanced) {
   const auto all = all_cases();
@@ -26,11 +28,15 @@ validate::Findings expect_met(const std::string& name, const std::set<std::strin
   int judged = 0;
   for (const auto& f : result.findings) {
     judged += is_judged(f);
-    EXPECT_EQ(f.holds(), !missed.contains(f.what))
+    const bool may_miss = missed.contains(f.what), holds_well = f.holds() && f.error < 0.75 * f.tolerance;
+    EXPECT_TRUE(may_miss ? !holds_well : f.holds())
         << f.what << ": " << f.measured << " for " << f.reference << ", error " << f.error << " " << f.unit
         << ", tolerance " << f.tolerance;
   }
   EXPECT_GT(judged, 0);
+  for (const auto& name_of_missed : missed)
+    EXPECT_TRUE(std::ranges::any_of(result.findings, [&](const auto& f) { return f.what == name_of_missed; }))
+        << name_of_missed;
   return result.findings;
 }
 
