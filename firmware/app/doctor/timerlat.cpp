@@ -125,7 +125,7 @@ std::string look_for_culprit(int core, int priority, double least_us, double sec
   const int status = folder.path.empty() ? -1 : std::system(command);
   if (status == -1) return "not looked for: no folder for the trace in /tmp";
   // Before the exit code: newer versions of rtla end with 2 after a late wake-up
-  const std::string found = delayed_by(content(folder.path + "/timerlat_trace.txt"));
+  std::string found = delayed_by(content(folder.path + "/timerlat_trace.txt"));
   if (!found.empty()) return found;
   constexpr int kNotFound = 127;
   if (WIFEXITED(status) && WEXITSTATUS(status) == kNotFound) return "not looked for: no program rtla";
