@@ -225,8 +225,8 @@ the rig goes on without a fault, with the last samples that it has. In all rows:
 - Every tick is recorded.
 - A fault stays until it is reset, disarms the rig, and removes the force of both hands.
 - While the controller is asleep or cut off from the bus, the drives' own watchdog (20 ms) removes the torque. These
-  drives are our simulated ones. What a moteus drive does after its watchdog is stored in the drive
-  ([drives](../drives.md#moteus)).
+  drives are our simulated ones. A moteus drive does not let go after its watchdog as it is delivered: it damps the
+  motion, or does what else is stored in it ([drives](../drives.md#moteus)).
 
 An encoder that stops or counts backwards is detected if it does so while the hand moves. At a hand at rest it is not
 detected at once; [the second table](#wrong-encoders-at-hands-that-pull) shows what such a hand feels. The row
