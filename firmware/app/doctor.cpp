@@ -17,6 +17,7 @@
 
 #include "firmware/app/admission.hpp"
 #include "firmware/app/doctor/can_echo.hpp"
+#include "firmware/app/doctor/file_text.hpp"
 #include "firmware/app/doctor/hwlat.hpp"
 #include "firmware/app/doctor/load.hpp"
 #include "firmware/app/doctor/report.hpp"
@@ -92,14 +93,8 @@ Latency measure_wakeups(double seconds, int core) {
   return result;
 }
 
-std::string text_of(const std::string& path) {
-  std::ostringstream text;
-  text << std::ifstream(path).rdbuf();
-  return text.str();
-}
-
 std::string cpu_name() {
-  const std::string text = text_of("/proc/cpuinfo");
+  const std::string text = file_text("/proc/cpuinfo");
   const auto at = text.find("model name");
   if (at == std::string::npos) return "not known";
   const auto from = text.find(':', at) + 2;
@@ -261,15 +256,16 @@ void measure(const DoctorOptions& options, DoctorReport& report) {
   report.seconds = latency.seconds;
   for (const auto& late : latency.worst)
     if (late.late_us > 0.0) report.worst.push_back(late);
+  std::vector<Check> culprit;
   if (options.is_acceptance() && !g_stop) {
     // As late as half of the worst: that will happen again soon
     const double least_us = latency.fine.max_us() / 2, seconds = std::min(kCulprit_s, options.duration_s());
     std::fprintf(stderr, "looking for what delays a wake-up by %.0f us, for %.0f s at most ..\n", least_us, seconds);
-    report.delayed_by = look_for_culprit(report.core, platform::kLoopPriority, least_us, seconds);
+    culprit.push_back(culprit_row(look_for_culprit(report.core, platform::kLoopPriority, least_us, seconds)));
   }
   for (const auto& r : latency.refusals) rows.push_back({Grade::kFail, "rights", r, {}});
   rows.push_back(report.slack_us ? judge(latency.fine, *report.slack_us) : judge(latency.wakeup));
-  if (!report.delayed_by.empty()) rows.push_back(culprit_row(report.delayed_by));
+  rows.insert(rows.end(), culprit.begin(), culprit.end());
   std::fputs((histogram(latency.wakeup, latency.bins) + table(rows)).c_str(), stdout);
   report.checks.insert(report.checks.end(), rows.begin(), rows.end());
 }
@@ -277,7 +273,7 @@ void measure(const DoctorOptions& options, DoctorReport& report) {
 int compare_files(const std::vector<std::string>& files) {
   std::vector<DoctorReport> reports;
   for (const auto& file : files) {
-    const std::string text = text_of(file);
+    const std::string text = file_text(file);
     auto read = report_of(text);
     if (const auto* why = std::get_if<std::string>(&read)) {
       std::fprintf(stderr, "ligature-firmware: %s: %s\n", file.c_str(), text.empty() ? "cannot be read" : why->c_str());
@@ -307,7 +303,7 @@ int doctor(const DoctorOptions& options) {
   report.core = platform::realtime_core();
   report.cores = static_cast<int>(std::thread::hardware_concurrency());
   report.started = utc_now();
-  report.kernel = text_of("/proc/sys/kernel/osrelease");
+  report.kernel = file_text("/proc/sys/kernel/osrelease");
   if (!report.kernel.empty()) report.kernel.pop_back();  // the line's end
   report.cpu = cpu_name();
   report.ligature = LIGATURE_VERSION;

@@ -259,7 +259,7 @@ std::optional<std::string> OdriveDrives::clear_errors(BusWait& wait) {
 }
 
 /// Idle to all drives; to those for which the bus refused it, again in each period: its queue gets room, and a bus that
-/// was lost may come back (a CAN controller restarts after 0.1 s, docs/deployment.md). @return whether all were sent
+/// was lost may come back (an interface that was down). @return whether all were sent
 bool OdriveDrives::send_idle(BusWait& wait) {
   const Nanoseconds deadline = wait.now() + kPatience;
   std::array<bool, rt::kJoints> is_sent{};

@@ -9,14 +9,10 @@
 #include <string_view>
 #include <thread>
 
+#include "firmware/app/doctor/file_text.hpp"
+
 namespace ligature::app {
 namespace {
-
-std::string content(const std::string& path) {
-  std::ostringstream text;
-  text << std::ifstream(path).rdbuf();
-  return text.str();
-}
 
 bool put(const std::string& path, const char* word) {
   std::ofstream file(path);
@@ -48,13 +44,13 @@ std::optional<double> longest_gap_us(const std::string& trace) {
 }
 
 std::string look_for_gaps(const std::string& folder, double seconds) {
-  if (!has_word(content(folder + "/available_tracers"), "hwlat"))
+  if (!has_word(file_text(folder + "/available_tracers"), "hwlat"))
     return "not looked for: this kernel has no tracer hwlat, or the user may not read its files";
-  if (!has_word(content(folder + "/current_tracer"), "nop")) return "not looked for: another tracer is in use";
+  if (!has_word(file_text(folder + "/current_tracer"), "nop")) return "not looked for: another tracer is in use";
   if (!put(folder + "/tracing_on", "1") || !put(folder + "/current_tracer", "hwlat"))
     return "not looked for: the user may not start the tracer hwlat";
   std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
-  const auto longest = longest_gap_us(content(folder + "/trace"));
+  const auto longest = longest_gap_us(file_text(folder + "/trace"));
   put(folder + "/current_tracer", "nop");
   char text[96];
   if (!longest)

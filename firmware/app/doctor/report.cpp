@@ -47,7 +47,6 @@ DoctorReport read(const Json& json) {
   r.scene = json.at("scene").get<std::string>();
   if (!json.at("slack_us").is_null()) r.slack_us = json.at("slack_us").get<double>();
   r.hardware = json.at("hardware").get<std::string>();
-  r.delayed_by = json.value("delayed_by", std::string());
   r.wakeup = histogram_of(json.at("wakeup"));
   for (const auto& late : json.at("worst"))
     r.worst.push_back({late.at("at_s").get<double>(), late.at("late_us").get<double>()});
@@ -140,7 +139,6 @@ std::string to_json(const DoctorReport& r) {
                   {"scene", r.scene},
                   {"slack_us", r.slack_us ? Json(*r.slack_us) : Json()},
                   {"hardware", r.hardware},
-                  {"delayed_by", r.delayed_by},
                   {"checks", std::move(checks)},
                   {"wakeup", json_of(r.wakeup)},
                   {"worst", std::move(worst)},

@@ -36,7 +36,6 @@ struct DoctorReport {
   std::string scene;               ///< empty: none given
   std::optional<double> slack_us;  ///< how late a wake-up may be with that scene
   std::string hardware;            ///< what the hwlat tracer found
-  std::string delayed_by;          ///< what the timerlat tracer found; empty in a report before 2026-11-27
   std::vector<platform::Check> checks;
   LatencyHistogram wakeup;
   std::vector<LateWakeUp> worst;

@@ -13,6 +13,8 @@
 #include <sstream>
 #include <vector>
 
+#include "firmware/app/doctor/file_text.hpp"
+
 namespace ligature::app {
 namespace {
 
@@ -31,12 +33,6 @@ struct TemporaryFolder {
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
   std::string path;
 };
-
-std::string content(const std::string& path) {
-  std::ostringstream text;
-  text << std::ifstream(path).rdbuf();
-  return text.str();
-}
 
 std::string us(double ns) {
   char text[32];
@@ -125,7 +121,7 @@ std::string look_for_culprit(int core, int priority, double least_us, double sec
   const int status = folder.path.empty() ? -1 : std::system(command);
   if (status == -1) return "not looked for: no folder for the trace in /tmp";
   // Before the exit code: newer versions of rtla end with 2 after a late wake-up
-  std::string found = delayed_by(content(folder.path + "/timerlat_trace.txt"));
+  std::string found = delayed_by(file_text(folder.path + "/timerlat_trace.txt"));
   if (!found.empty()) return found;
   constexpr int kNotFound = 127;
   if (WIFEXITED(status) && WEXITSTATUS(status) == kNotFound) return "not looked for: no program rtla";

@@ -63,7 +63,6 @@ DoctorReport some_report() {
   r.scene = "scenes/paper.toml";
   r.slack_us = 210.5;
   r.hardware = "none";
-  r.delayed_by = "21 us late";
   r.checks = {{platform::Grade::kOk, "kernel", "fine", ""}, {platform::Grade::kFail, "own core", "none", "do it"}};
   for (const int us : {3, 3, 4, 250, 20'000}) r.wakeup.add(us * 1000);
   r.worst = {{1.5, 20'000.0}, {2.5, 250.0}};

@@ -198,8 +198,8 @@ TEST(OdriveInOperation, ADriveThatObeysNothingStarvesAlsoAfterAStop) {
   EXPECT_LE(ticks, 45) << "ten periods with emergency stops, then the watchdog";
 }
 
-/// At the end of a run the bus is lost, and comes back after 0.2 s, as a CAN controller that restarts. The drives have
-/// no watchdog, so they go off only if the firmware tries again until then.
+/// At the end of a run the bus is lost, and comes back after 0.2 s, as an interface that somebody sets up. The drives
+/// have no watchdog, so they go off only if the firmware tries again until then.
 TEST(OdriveStartUp, ReleaseWaitsForALostBusToComeBack) {
   const OdriveSettings on{.watchdog = milliseconds(0), .starts_in_closed_loop = true};
   OdriveHand rig(on, on);
