@@ -2,7 +2,7 @@
 # installs in a clean Debian 12 without a compiler, where examples/01 runs. Called by: scripts/package wheel
 #   package wheel                builds and checks; the last check needs root
 #   package wheel --no-root      without the clean Debian
-#   package wheel -- OPTIONS     with further options of pip wheel, such as -Ccmake.define.LIGATURE_ARCH=x86-64-v2
+#   package wheel -- OPTIONS     with further options of pip wheel, such as --config-settings=cmake.define.LIGATURE_ARCH=x86-64-v2
 set -euo pipefail
 cd "$(dirname "$0")/.."
 clean=yes options=()
@@ -21,7 +21,7 @@ out=$PWD/build/wheel python=$PWD/build/venv/bin/python
 export PATH=$PWD/build/venv/bin:$PATH
 mkdir -p "$out"
 rm -rf "$out"/raw "$out"/*.whl
-[[ "${options[*]}" == *-Cbuild-dir=* ]] || options+=("-Cbuild-dir=$out/build")
+[[ "${options[*]}" == *=build-dir=* ]] || options+=("--config-settings=build-dir=$out/build")
 "$python" -m pip wheel --quiet --no-build-isolation --no-deps -w "$out/raw" "${options[@]}" .
 # Names the oldest system that the wheel runs on, and copies in what no system is sure to have (nothing, as checked below).
 "$python" -m auditwheel repair --strip --wheel-dir "$out" "$out"/raw/*.whl > "$out/auditwheel.log" 2>&1 || { cat "$out/auditwheel.log" >&2; exit 3; }

@@ -21,4 +21,4 @@ def require() -> None:
         return
     if missing:
         raise ImportError(f"ligature: this CPU lacks {' '.join(missing)}, and this build is for {ARCH}; "
-                          "remedy: pip install . -Ccmake.define.LIGATURE_ARCH=x86-64-v2 makes a build for every x86-64 since 2009")
+                          "remedy: pip install . --config-settings=cmake.define.LIGATURE_ARCH=x86-64-v2 makes a build for every x86-64 since 2009")
