@@ -1,5 +1,6 @@
 #include "host/csv_tables.hpp"
 
+#include "host/export.hpp"
 #include "host/export_csv.hpp"
 #include "host/names.hpp"
 #include "host/tick_columns.hpp"

@@ -9,7 +9,7 @@ namespace ligature::app {
 namespace {
 
 constexpr const char* kOverridePassivity = "hands.override_passivity=true";
-constexpr std::string_view kMaxForce = "hands.max_force_N", kForceScale = "hands.force_scale";
+constexpr std::string_view kMaxForce = "hands.max_force_N", kForceScaleKey = "hands.force_scale";
 
 /// Whether an override sets `key`, either itself or as part of a whole TOML table.
 bool speaks_of(std::string_view override, std::string_view key) {
@@ -51,7 +51,7 @@ std::vector<std::string> Launch::with(const std::vector<std::string>& live, cons
 
 std::optional<double> Launch::highest(std::string_view key) const {
   const auto bounds = [&](const std::string& o) { return speaks_of(o, key); };
-  if (key != kForceScale || !std::ranges::any_of(overrides_, bounds)) return std::nullopt;
+  if (key != kForceScaleKey || !std::ranges::any_of(overrides_, bounds)) return std::nullopt;
   return hands_.force_scale;
 }
 

@@ -5,8 +5,8 @@
 namespace ligature::device {
 namespace {
 
-constexpr std::pair<const char*, DriveWatchdog> kWatchdogs[] = {{"setpoints", DriveWatchdog::kRpdoTimer},
-                                                                {"none", DriveWatchdog::kNone}};
+constexpr std::pair<const char*, DriveWatchdog> kOdriveWatchdogs[] = {{"setpoints", DriveWatchdog::kRpdoTimer},
+                                                                      {"none", DriveWatchdog::kNone}};
 // Identifiers 0x001 .. 0x07F are those of the nodes 0 to 3: node << 5 | command. All drives obey those of node 0x3F.
 constexpr int kFirstFree = 0x080, kLast = 0x7DF;
 
@@ -17,7 +17,7 @@ void read_odrive(scene::StrictTable& t, OdriveProfile& p) {
   t.require("source");
   t.require("torque_constant_Nm_per_A");
   t.choice("source", source, kSourceNames);
-  t.choice("watchdog", p.watchdog, kWatchdogs);
+  t.choice("watchdog", p.watchdog, kOdriveWatchdogs);
   t.integer("watchdog_ms", p.watchdog_ms, 5, 10000);
   t.integer("heartbeat_ms", p.heartbeat_ms, 10, 50);  // three are faster than a drive starts anew
   t.number("torque_constant_Nm_per_A", p.torque_constant_Nm_per_A, {1e-6, 1e6});

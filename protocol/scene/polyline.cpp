@@ -7,7 +7,7 @@
 namespace ligature::scene {
 namespace {
 
-constexpr double kFar_m = 1e6;  // largest coordinate, m; squares of such values stay finite
+constexpr double kFarthestPoint_m = 1e6;  // largest coordinate, m; squares of such values stay finite
 
 Vec minus(const Vec& a, const Vec& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 Vec plus(const Vec& a, double s, const Vec& b) { return {a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]}; }
@@ -35,7 +35,7 @@ std::variant<std::vector<Vec>, Error> load_polyline(const std::filesystem::path&
       if (!parse_number(row.cells[i], p[i])) {
         return at_line(path, row.line, "found '" + shown(row.cells[i]) + "', allowed a finite number");
       }
-      if (std::abs(p[i]) > kFar_m)
+      if (std::abs(p[i]) > kFarthestPoint_m)
         return at_line(path, row.line, "found " + shown(row.cells[i]) + ", allowed -1e6 .. 1e6");
     }
     points.push_back(p);

@@ -30,7 +30,7 @@ constexpr std::array kKnots{
 const Vec3 kSlant = Vec3(-0.75, 0.0, -0.66).normalized();  // direction past the corner, down to the left
 const Vec3 kDown = Vec3(-0.1, 0.0, -1.0).normalized();
 
-const Vec3 kFront = -Vec3::UnitY();
+const Vec3 kSeenFrom = -Vec3::UnitY();
 
 constexpr double kWatch_s = 5.0;  // waiting time after the last release, to see whether the knot stays
 
@@ -103,13 +103,13 @@ struct Places {
 };
 
 Move see_the_places(const std::shared_ptr<Places>& places) {
-  constexpr double kFirst = 0.3, kBeyond = 0.18, kMost = 0.6, kTurn = 0.5, kTurnBeyond = 0.4;
+  constexpr double kFirst = 0.3, kBeyond = 0.18, kMost = 0.6, kTurnAt = 0.5, kTurnBeyond = 0.4;
   return {"see the knot", [=](const Look& look) {
             const double knotted = tangle(look).last_m, all = look.thread.length_m();
             const bool is_first = !(knotted > 0.0);
             const double corner = is_first ? kFirst * all : std::min(knotted + kBeyond * all, kMost * all);
             const double base = std::min(knotted, corner);
-            *places = {corner, base + (is_first ? kTurn : kTurnBeyond) * (corner - base)};
+            *places = {corner, base + (is_first ? kTurnAt : kTurnBeyond) * (corner - base)};
             return true;
           }};
 }
@@ -163,7 +163,7 @@ bool hangs_straight(const Look& look) {
 }  // namespace
 
 std::optional<std::size_t> throws_seen(const Knot& knot, const Look& look) {
-  const int seen = seen_determinant(look.thread.between(0.0, look.thread.length_m()), kFront);
+  const int seen = seen_determinant(look.thread.between(0.0, look.thread.length_m()), kSeenFrom);
   int tied = 1;
   for (std::size_t k = 0; k <= knot.throws.size(); ++k) {
     if (seen == tied) return k;

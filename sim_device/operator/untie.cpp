@@ -16,7 +16,8 @@ constexpr std::array kInside_d{1.0, 3.0, 5.0};
 constexpr double kDrawn = 0.36;  // how far the hand draws, as a fraction of the thread's length
 // Pull at which the hand stops, because the knot has jammed; as a multiple of the pull at which a knot is tight
 constexpr double kMostPull = 1.3;
-constexpr double kStep = 0.01;  // the operator looks for the knot's end at 100 places of the thread, then more closely
+// The operator looks for the knot's end at 100 places of the thread, then more closely.
+constexpr double kLookAt = 0.01;
 
 struct Pull {
   double at_m = 0.0;  ///< where the hand takes the thread, as an arc length
@@ -34,7 +35,7 @@ bool no_knot_seen(const Look& look) { return seen(look, look.thread.length_m()) 
 double knot_end_m(const Look& look) {
   double end_m = look.thread.length_m();
   const int knotted = seen(look, end_m);
-  for (const double step_m : {std::max(look.place.diameter_m, kStep * end_m), look.place.diameter_m})
+  for (const double step_m : {std::max(look.place.diameter_m, kLookAt * end_m), look.place.diameter_m})
     while (end_m > step_m && seen(look, end_m - step_m) == knotted) end_m -= step_m;
   return end_m;
 }

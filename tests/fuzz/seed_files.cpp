@@ -2,6 +2,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "ligature_source_dir.hpp"
 #include "tests/fuzz/target.hpp"
 
 namespace ligature::fuzz {

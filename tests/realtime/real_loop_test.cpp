@@ -27,6 +27,7 @@
 #include <vector>
 
 #include "firmware/app/real_time_side.hpp"
+#include "ligature_source_dir.hpp"
 #include "tests/realtime/watch.hpp"
 #include "tests/support/temp_folder.hpp"
 

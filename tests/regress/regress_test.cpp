@@ -9,6 +9,7 @@
 
 #include "host/lab/outcome.hpp"
 #include "host/lab/regress/expected.hpp"
+#include "ligature_source_dir.hpp"
 
 namespace ligature::regress {
 namespace {

@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "ligature_source_dir.hpp"
+
 namespace ligature::test {
 
 struct LcmField {

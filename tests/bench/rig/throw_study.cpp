@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "host/lab/rig/virtual_rig.hpp"
+#include "ligature_source_dir.hpp"
 #include "protocol/scene/scene_file.hpp"
 #include "sim_device/operator/knot_tier.hpp"
 #include "tests/support/knot_in.hpp"

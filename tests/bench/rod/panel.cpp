@@ -6,6 +6,7 @@
 #include <utility>
 #include <variant>
 
+#include "ligature_source_dir.hpp"
 #include "protocol/scene/scene_file.hpp"
 #include "tests/support/random.hpp"
 #include "tests/unit/rod/crumple.hpp"

@@ -5,6 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "ligature_source_dir.hpp"
 #include "protocol/scene/scene_file.hpp"
 #include "sim_device/unrest.hpp"
 #include "tests/support/random.hpp"

@@ -14,9 +14,11 @@
 #include <stdexcept>
 
 #include "firmware/control/faults.hpp"
+#include "ligature_source_dir.hpp"
 #include "protocol/scene/fault_script.hpp"
 #include "sim_device/page/steered_hand.hpp"
 #include "tests/integration/virtual_rig/attack.hpp"
+#include "tests/integration/virtual_rig/scenes.hpp"
 #include "tests/integration/virtual_rig/simulated_rig.hpp"
 #include "tests/support/random.hpp"
 
@@ -24,7 +26,6 @@ namespace ligature {
 namespace {
 
 namespace fs = std::filesystem;
-const std::string kScenes = std::string(LIGATURE_SOURCE_DIR) + "/scenes/";
 constexpr std::int64_t kOnset = 1500, kTicks = 2200;
 const std::string kByChance = "\n## A bad bus";
 

@@ -8,6 +8,7 @@
 #include "firmware/control/faults.hpp"
 #include "protocol/can/device_profile.hpp"
 #include "protocol/scene/fault_script.hpp"
+#include "tests/integration/virtual_rig/scenes.hpp"
 #include "tests/integration/virtual_rig/simulated_rig.hpp"
 #include "tests/support/random.hpp"
 
@@ -17,8 +18,6 @@ namespace {
 using control::Fault;
 using scene::FaultKind;
 using scene::ForeignFrame;
-
-const std::string kScenes = std::string(LIGATURE_SOURCE_DIR) + "/scenes/";
 
 struct Rig : lab::VirtualRig {
   explicit Rig(bool armed, double loss = 0.0, std::uint64_t seed = 1)

@@ -9,11 +9,11 @@
 #include "protocol/device/device_file.hpp"
 #include "protocol/scene/scene_file.hpp"
 #include "sim_device/unrest.hpp"
+#include "tests/integration/virtual_rig/scenes.hpp"
 
 namespace ligature {
 namespace {
 
-const std::string kScenes = std::string(LIGATURE_SOURCE_DIR) + "/scenes/";
 constexpr double kFloor_J = 1e-6;
 constexpr double kStep_N = 0.5, kRounding_N = 0.02;  // records hold the force before its torques are rounded
 

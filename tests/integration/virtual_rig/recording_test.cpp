@@ -10,15 +10,12 @@
 #include "host/errors.hpp"
 #include "host/export.hpp"
 #include "host/knot_command.hpp"
+#include "tests/integration/virtual_rig/scenes.hpp"
 #include "tests/integration/virtual_rig/simulated_rig.hpp"
 #include "tests/support/temp_folder.hpp"
 
 namespace ligature {
 namespace {
-
-const std::string kScenes = std::string(LIGATURE_SOURCE_DIR) + "/scenes/";
-
-scene::Scene paper() { return std::get<scene::Scene>(scene::load_scene(kScenes + "paper.toml")); }
 
 /// An operator that holds both tools at their start and then draws the right one aside; stores what it perceives.
 class Drawer final : public lab::SeeingOperator {

@@ -14,6 +14,7 @@
 #include "host/log_reader.hpp"
 #include "host/log_writer.hpp"
 #include "host/messages.hpp"
+#include "ligature_source_dir.hpp"
 #include "protocol/scene/recorded_scene.hpp"
 #include "protocol/scene/text_file.hpp"
 #include "tests/integration/virtual_rig/simulated_rig.hpp"

@@ -4,14 +4,13 @@
 #include <gtest/gtest.h>
 
 #include "protocol/scene/scene_file.hpp"
+#include "tests/integration/virtual_rig/scenes.hpp"
 
 namespace ligature::lab {
 namespace {
 
-const std::string kScenes = std::string(LIGATURE_SOURCE_DIR) + "/scenes/";
 const sim::Vec3 kThread{0.0, 0.0, 2.3}, kAbove{0.6, 0.0, 4.4};
 
-scene::Scene paper() { return std::get<scene::Scene>(scene::load_scene(kScenes + "paper.toml")); }
 scene::FaultScript fault(const std::string& name) {
   return std::get<scene::FaultScript>(scene::load_fault_script(kScenes + "faults/" + name));
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ligature_source_dir.hpp"
 #include "simulated_rig.hpp"
 
 namespace ligature {

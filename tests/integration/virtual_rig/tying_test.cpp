@@ -8,6 +8,7 @@
 
 #include "host/knot/recognise.hpp"
 #include "host/lab/rig/virtual_rig.hpp"
+#include "ligature_source_dir.hpp"
 #include "protocol/scene/scene_file.hpp"
 #include "sim_device/operator/knot_tier.hpp"
 #include "tests/integration/virtual_rig/heard_rig.hpp"

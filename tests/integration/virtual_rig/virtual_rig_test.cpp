@@ -4,14 +4,12 @@
 #include <cmath>
 
 #include "host/knot/recognise.hpp"
+#include "tests/integration/virtual_rig/scenes.hpp"
 #include "tests/integration/virtual_rig/simulated_rig.hpp"
 
 namespace ligature {
 namespace {
 
-const std::string kScenes = std::string(LIGATURE_SOURCE_DIR) + "/scenes/";
-
-scene::Scene paper() { return std::get<scene::Scene>(scene::load_scene(kScenes + "paper.toml")); }
 scene::GripperScript overhand() {
   return std::get<scene::GripperScript>(scene::load_gripper_script(kScenes + "operators/overhand.csv"));
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "ligature_source_dir.hpp"
 #include "protocol/can/codec.hpp"
 #include "protocol/can/sdo.hpp"
 #include "protocol/device/device_file.hpp"

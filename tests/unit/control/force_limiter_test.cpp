@@ -7,12 +7,12 @@
 #include <deque>
 
 #include "tests/support/random.hpp"
+#include "tests/unit/control/plain_device.hpp"
 
 namespace ligature::control {
 namespace {
 
 using physics::Vec3;
-constexpr double kT_s = 1e-3;
 
 ForceLimiter limiter(double max_force_N = 3.3) { return {device::omni(), max_force_N, kT_s}; }
 

@@ -13,6 +13,8 @@
 
 namespace ligature::control {
 
+inline constexpr double kExact_J = 1e-12;  ///< rounding error of sums
+
 /// Bounds for a hand whose tip acceleration is at most `wildness` times the device file's limit:
 ///   account <= work + hidden + unseen
 ///   work    >= -1 uJ - hidden - unseen - counted - beyond

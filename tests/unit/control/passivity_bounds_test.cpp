@@ -10,8 +10,6 @@
 namespace ligature::control {
 namespace {
 
-constexpr double kExact_J = 1e-12;  // rounding error of sums
-
 void expect_within(const Port& port) {
   EXPECT_LE(port.bounds.above_J, kExact_J) << "the account above the work";
   EXPECT_LE(port.bounds.below_J, kExact_J) << "more given than the account had";

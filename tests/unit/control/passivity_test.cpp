@@ -34,8 +34,6 @@ TEST(Passivity, ASampledSpringMakesEnergyAndTheControllerRefusesIt) {
   EXPECT_GT(held.acted, 0);
 }
 
-constexpr double kExact_J = 1e-12;  // rounding error of sums
-
 /// 40 random attacks of 3 s. In each period the hand's acceleration is drawn anew, up to the bound `a` in both senses:
 /// in half of the attacks along the motors' force, in the others along a direction that changes every 1 to 17 periods.
 /// The motors act as a damped spring, or in every third attack as a negative spring, which pushes outwards.

@@ -9,8 +9,10 @@
 
 #include "firmware/control/admissible.hpp"
 #include "firmware/control/workspace_map.hpp"
+#include "ligature_source_dir.hpp"
 #include "protocol/scene/scene_file.hpp"
 #include "tests/support/random.hpp"
+#include "tests/unit/control/plain_device.hpp"
 
 namespace ligature::control {
 namespace {
@@ -37,8 +39,6 @@ TEST(Saturate, NeverAboveTheLimitHoweverItIsMeasured) {
     ASSERT_LE(std::sqrt(f.x() * f.x() + f.y() * f.y() + f.z() * f.z()), 3.3);
   }
 }
-
-constexpr double kT_s = 1e-3;
 
 /// The force with a resting device, in the steady state.
 Vec3 felt(const scene::Hands& h, const Grasp& grasp, const Vec3& p_WT = Vec3::Zero(), const Vec3& v_WT = Vec3::Zero()) {

@@ -5,11 +5,11 @@
 
 #include "tests/support/random.hpp"
 #include "tests/unit/control/controller_rig.hpp"
+#include "tests/unit/control/plain_device.hpp"
 
 namespace ligature::control {
 namespace {
 
-constexpr double kT_s = 1e-3;
 constexpr double kGuard = 1.2;  // share of the continuous torque to which a drive limits itself when its winding is hot
 
 /// Thermal model of an arm's windings as its drives compute it, rated 20 % above the device file; 1 = too hot.

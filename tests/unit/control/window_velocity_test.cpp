@@ -1,6 +1,7 @@
 // WindowVelocity estimates a velocity from encoder counts: its noise and lag, compared with a first-order low-pass.
 // Prints the tables of docs/measurements/haptics.md.
 #include "firmware/control/window_velocity.hpp"
+#include "tests/unit/control/plain_device.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +13,6 @@
 namespace ligature::control {
 namespace {
 
-constexpr double kT_s = 1e-3;
 constexpr double kQuantum_rad = 2.0 * std::numbers::pi / 16384.0;
 constexpr double kLever_m = 0.1325;  // m; tip speeds below are for a link of this length
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "ligature_source_dir.hpp"
 #include "protocol/device/device_file.hpp"
 
 namespace ligature::device {

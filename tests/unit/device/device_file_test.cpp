@@ -7,6 +7,7 @@
 #include <fstream>
 #include <set>
 
+#include "ligature_source_dir.hpp"
 #include "protocol/can/device_profile.hpp"
 
 namespace ligature::device {

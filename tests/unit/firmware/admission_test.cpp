@@ -9,6 +9,7 @@
 #include "firmware/physics/simulation.hpp"
 #include "firmware/platform/make_drives.hpp"
 #include "firmware/platform/sanitized.hpp"
+#include "ligature_source_dir.hpp"
 #include "protocol/device/device_file.hpp"
 #include "protocol/scene/scene_file.hpp"
 

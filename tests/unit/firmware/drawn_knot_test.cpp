@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "host/knot/recognise.hpp"
+#include "ligature_source_dir.hpp"
 #include "protocol/scene/scene_file.hpp"
 
 namespace ligature::app {

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "firmware/app/scene_preview.hpp"
+#include "ligature_source_dir.hpp"
 #include "protocol/scene/scene_file.hpp"
 #include "tests/unit/firmware/scene_desk_fixture.hpp"
 

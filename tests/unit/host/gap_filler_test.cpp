@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <fstream>
 #include <memory>
@@ -32,7 +33,7 @@ void write_flight(const std::string& path, std::int64_t session, std::int64_t fi
     head.crc = recorder::crc_of(head, payload);
     std::vector<char> slot(header->slot_bytes);
     std::memcpy(slot.data(), &head, sizeof head);
-    std::memcpy(slot.data() + sizeof head, payload.data(), payload.size());
+    std::ranges::transform(payload, slot.begin() + sizeof head, [](std::byte b) { return static_cast<char>(b); });
     bytes.insert(bytes.end(), slot.begin(), slot.end());
   }
   std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));

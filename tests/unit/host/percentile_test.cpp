@@ -20,7 +20,7 @@ TEST(Percentile, IsExactOnOneToAHundred) {
 }
 
 TEST(Percentile, IsTheSmallestSampleThatEnoughOthersDoNotExceed) {
-  test::Random random(2);
+  ligature::test::Random random(2);
   for (const std::size_t count : {1U, 2U, 3U, 10U, 997U}) {
     std::vector<std::int32_t> samples(count);
     for (auto& sample : samples) sample = static_cast<std::int32_t>(random() % 50);  // with equal values

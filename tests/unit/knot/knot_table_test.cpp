@@ -15,6 +15,7 @@
 #include "host/knot/jones.hpp"
 #include "host/knot/polygon.hpp"
 #include "host/knot/projection.hpp"
+#include "ligature_source_dir.hpp"
 #include "tests/unit/knot/shapes.hpp"
 
 namespace ligature::knot {

@@ -10,7 +10,7 @@
 namespace ligature::knot {
 namespace {
 
-std::vector<Point> points(const shapes::Polyline& line) {
+std::vector<Point> points_of(const shapes::Polyline& line) {
   std::vector<Point> p;
   for (const auto& v : line) p.emplace_back(v[0], v[1], v[2]);
   jitter(p);
@@ -18,7 +18,7 @@ std::vector<Point> points(const shapes::Polyline& line) {
 }
 
 TEST(Polygon, AnUnknotShrinksToATriangle) {
-  Polygon circle(points(shapes::torus_knot(1, 80)));
+  Polygon circle(points_of(shapes::torus_knot(1, 80)));
   circle.cut_corners();
   EXPECT_EQ(circle.corners().size(), 3u);
 }
@@ -26,7 +26,7 @@ TEST(Polygon, AnUnknotShrinksToATriangle) {
 TEST(Polygon, ATrefoilNeverShrinksBelowItsSixSticks) {
   test::Random random(1);
   for (int k = 0; k < 50; ++k) {
-    Polygon trefoil(points(shapes::posed(shapes::trefoil(60), random, 0.03)));
+    Polygon trefoil(points_of(shapes::posed(shapes::trefoil(60), random, 0.03)));
     trefoil.cut_corners();
     EXPECT_GE(trefoil.corners().size(), 6u);
     EXPECT_LE(trefoil.corners().size(), 15u);
@@ -37,7 +37,7 @@ TEST(Polygon, ShakingKeepsTheKnot) {
   test::Random random(4);
   Draw draw(random());
   for (int k = 0; k < 50; ++k) {
-    Polygon knot(points(shapes::posed(shapes::figure_eight(60), random, 0.02)));
+    Polygon knot(points_of(shapes::posed(shapes::figure_eight(60), random, 0.02)));
     knot.cut_corners();
     for (int i = 0; i < 20; ++i) {
       knot.shake(draw);

@@ -8,15 +8,10 @@
 
 #include "host/lab/outcome.hpp"
 #include "tests/support/temp_folder.hpp"
+#include "tests/unit/lab/text_of.hpp"
 
 namespace ligature::lab {
 namespace {
-
-std::string text_of(const std::filesystem::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path).rdbuf();
-  return text.str();
-}
 
 TEST(CsvFile, NumbersReadBackExactly) {
   const std::filesystem::path path = test::temp_folder() + "numbers.csv";

@@ -7,6 +7,7 @@
 
 #include "host/lab/rehearsal.hpp"
 #include "host/lab/script_moves.hpp"
+#include "ligature_source_dir.hpp"
 
 namespace ligature::lab {
 namespace {

@@ -4,6 +4,7 @@
 
 #include "host/lab/experiments/experiment.hpp"
 #include "host/lab/outcome.hpp"
+#include "ligature_source_dir.hpp"
 #include "tests/support/temp_folder.hpp"
 
 namespace ligature::lab {

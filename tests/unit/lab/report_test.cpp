@@ -8,15 +8,10 @@
 #include "host/lab/outcome.hpp"
 #include "host/lab/script_moves.hpp"
 #include "tests/support/temp_folder.hpp"
+#include "tests/unit/lab/text_of.hpp"
 
 namespace ligature::lab {
 namespace {
-
-std::string text_of(const std::filesystem::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path).rdbuf();
-  return text.str();
-}
 
 TEST(Verdict, FailsWhenOneClaimDoes) {
   const std::filesystem::path folder = test::temp_folder();

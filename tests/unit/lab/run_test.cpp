@@ -8,6 +8,7 @@
 #include <string>
 
 #include "host/lab/outcome.hpp"
+#include "ligature_source_dir.hpp"
 #include "tests/support/temp_folder.hpp"
 
 namespace ligature::lab {

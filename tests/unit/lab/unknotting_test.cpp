@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "host/lab/unknotting/planner.hpp"
+#include "ligature_source_dir.hpp"
 
 namespace ligature::lab {
 namespace {

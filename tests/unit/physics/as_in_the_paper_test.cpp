@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "ligature_source_dir.hpp"
 #include "tests/unit/physics/script_run.hpp"
 
 namespace ligature::physics {

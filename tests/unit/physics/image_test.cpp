@@ -14,6 +14,7 @@
 
 #include "firmware/physics/image.hpp"
 #include "firmware/physics/simulation.hpp"
+#include "ligature_source_dir.hpp"
 #include "protocol/scene/scene_file.hpp"
 #include "tests/support/random.hpp"
 

@@ -10,6 +10,7 @@
 
 #include "firmware/physics/simulation.hpp"
 #include "host/knot/recognise.hpp"
+#include "ligature_source_dir.hpp"
 #include "protocol/scene/gripper_script.hpp"
 #include "protocol/scene/scene_file.hpp"
 

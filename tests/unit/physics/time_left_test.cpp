@@ -2,6 +2,7 @@
 // the tick. A rerun that ends its ticks after the same pieces gives the same result.
 #include <gtest/gtest.h>
 
+#include "ligature_source_dir.hpp"
 #include "tests/support/random.hpp"
 #include "tests/unit/physics/script_run.hpp"
 

@@ -9,6 +9,7 @@
 #include "firmware/platform/cia402_facts.hpp"
 #include "firmware/platform/cia402_time.hpp"
 #include "firmware/platform/make_drives.hpp"
+#include "ligature_source_dir.hpp"
 #include "protocol/can/cia402.hpp"
 #include "protocol/can/codec.hpp"
 #include "protocol/can/heartbeat.hpp"

@@ -11,6 +11,7 @@
 #include "firmware/platform/make_drives.hpp"
 #include "firmware/platform/moteus_frames.hpp"
 #include "firmware/platform/odrive_frames.hpp"
+#include "ligature_source_dir.hpp"
 #include "protocol/can/cia402.hpp"
 #include "protocol/can/codec.hpp"
 #include "protocol/can/nmt.hpp"

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "firmware/platform/moteus_link.hpp"
+#include "ligature_source_dir.hpp"
 #include "protocol/device/device_file.hpp"
 #include "tests/unit/platform/fake_bus.hpp"
 

@@ -10,6 +10,7 @@
 
 #include "firmware/platform/make_drives.hpp"
 #include "firmware/platform/odrive_time.hpp"
+#include "ligature_source_dir.hpp"
 #include "protocol/can/bit_time.hpp"
 #include "protocol/device/device_file.hpp"
 #include "tests/support/random.hpp"
@@ -18,7 +19,7 @@
 namespace ligature::platform {
 namespace {
 
-constexpr std::uint8_t kOn = odrive::kClosedLoop, kOff = odrive::kIdle;
+constexpr std::uint8_t kIsOn = odrive::kClosedLoop, kIsIdle = odrive::kIdle;
 
 device::Device shipped() {
   return std::get<device::Device>(
@@ -67,7 +68,7 @@ class Odrive : public ::testing::Test {
 
 TEST_F(Odrive, AsksByRemoteFramesAndTakesRevolutionsOfTheMotor) {
   (void)period();  // the first frame of the buttons has no counter before it
-  beat_all(kOn);
+  beat_all(kIsOn);
   const auto r = period(0.5F);
   ASSERT_EQ(bus.sent.size(), 3U);
   EXPECT_EQ(bus.sent[1], (can::Frame{can::kRemoteBit | 0x049, 8, {}}));
@@ -170,7 +171,7 @@ TEST_F(Odrive, ButtonsWhoseCounterStandsStillAreStuck) {
 }
 
 TEST_F(Odrive, TorquesAreOfTheMotorAndAsRecorded) {
-  beat_all(kOn);
+  beat_all(kIsOn);
   (void)period();
   const auto permille = link.write({{0.03, -0.3, 9.0}, rt::DriveRequest::kOperate});
   EXPECT_EQ(permille, (std::array<std::int16_t, 3>{100, -1000, 3000}));
@@ -180,23 +181,23 @@ TEST_F(Odrive, TorquesAreOfTheMotorAndAsRecorded) {
 }
 
 TEST_F(Odrive, ADrivesErrorAndItsSilenceAreFaults) {
-  beat_all(kOn);
+  beat_all(kIsOn);
   EXPECT_FALSE(period().drive_fault);
-  beat(2, kOff, odrive::kWatchdogExpired);
+  beat(2, kIsIdle, odrive::kWatchdogExpired);
   EXPECT_TRUE(period().drive_fault);
   EXPECT_FALSE(link.reading().enabled);
   link.write({{}, rt::DriveRequest::kOperate});
-  beat_all(kOn);
+  beat_all(kIsOn);
   EXPECT_FALSE(period().drive_fault);
   for (int i = 1; i <= 31; ++i) EXPECT_EQ(period().drive_fault, i > 30 - 1) << "three heartbeats stayed away: " << i;
-  beat_all(kOn);
+  beat_all(kIsOn);
   EXPECT_TRUE(period().drive_fault) << "until a restart";
 }
 
 /// Any frame may reset a drive's watchdog, even a request. So the link sends nothing more to a drive that does not
 /// obey, and the drive's watchdog switches it off.
 TEST_F(Odrive, SwitchesOffWithZeroTorqueThenIdleThenNothing) {
-  beat_all(kOn);
+  beat_all(kIsOn);
   for (int i = 0; i < 100; ++i) {
     (void)period();
     EXPECT_EQ(link.write({{0.1, 0.1, 0.1}, rt::DriveRequest::kHold}), (std::array<std::int16_t, 3>{}));
@@ -206,10 +207,10 @@ TEST_F(Odrive, SwitchesOffWithZeroTorqueThenIdleThenNothing) {
       EXPECT_EQ(sent(node, odrive::Command::kSetInputTorque), i == 0 ? 1 : 0);
       EXPECT_EQ(sent(node, odrive::Command::kSetAxisState), idles ? 1 : 0) << i;
     }
-    if (i == 50) beat(1, kOff);
-    if (i == 60) beat(2, kOff);
+    if (i == 50) beat(1, kIsIdle);
+    if (i == 60) beat(2, kIsIdle);
   }
-  beat_all(kOff);
+  beat_all(kIsIdle);
   (void)period();
   link.write({{}, rt::DriveRequest::kHold});
   EXPECT_EQ(bus.sent.size(), 0U);
@@ -226,7 +227,7 @@ TEST_F(Odrive, AHeartbeatFromBeforeIdleIsNoAnswer) {
       bus.sent.clear();
       other.request();
       asks = i > 0 && !bus.sent.empty();
-      if (i == early) beat_all(kOff);
+      if (i == early) beat_all(kIsIdle);
       other.drain();
       other.write({{}, rt::DriveRequest::kHold});
     }
@@ -235,14 +236,14 @@ TEST_F(Odrive, AHeartbeatFromBeforeIdleIsNoAnswer) {
 }
 
 TEST_F(Odrive, AStopIsAnEmergencyStopInEveryPeriodWhileAnotherControllerSends) {
-  beat_all(kOn);
+  beat_all(kIsOn);
   for (int i = 0; i < 100; ++i) {
     if (i < 20) bus.inbox.push_back(odrive::set_torque(1, 0.2F));
     (void)period();
     link.write({{}, rt::DriveRequest::kStop});
     const bool again = i > 27 && (i - 27) % 34 == 0;
     EXPECT_EQ(sent(2, odrive::Command::kEstop), i <= 27 || again ? 1 : 0) << i;
-    beat_all(kOff);
+    beat_all(kIsIdle);
   }
   bus.inbox.push_back(odrive::set_torque(1, 0.2F));
   OdriveLink other(bus, device);
@@ -254,7 +255,7 @@ TEST_F(Odrive, AStopIsAnEmergencyStopInEveryPeriodWhileAnotherControllerSends) {
 
 /// While a fault is latched, the controller goes on to ask for kHold. The other one could switch the drives on again.
 TEST_F(Odrive, AnotherControllerDuringAFaultMeetsEmergencyStopsToo) {
-  beat_all(kOn);
+  beat_all(kIsOn);
   for (int i = 0; i < 70; ++i) {
     if (i >= 50) bus.inbox.push_back(odrive::set_torque(1, 0.2F));
     (void)period();
@@ -264,8 +265,8 @@ TEST_F(Odrive, AnotherControllerDuringAFaultMeetsEmergencyStopsToo) {
 }
 
 TEST_F(Odrive, BringsDrivesUpOneAfterTheOtherAndClearsErrors) {
-  beat_all(kOff);
-  beat(3, kOff, odrive::kWatchdogExpired);
+  beat_all(kIsIdle);
+  beat(3, kIsIdle, odrive::kWatchdogExpired);
   int on[4] = {}, cleared[4] = {};
   for (int i = 0; i < 29; ++i) {
     (void)period();
@@ -288,7 +289,7 @@ TEST_F(Odrive, BringsDrivesUpOneAfterTheOtherAndClearsErrors) {
 TEST_F(Odrive, NoClosedLoopAfterACommandThatTheBusRefused) {
   for (const long command : {0, 1}) {
     OdriveLink other(bus, device);
-    beat_all(kOff);
+    beat_all(kIsIdle);
     for (int i = 0; i < 3; ++i) {
       bus.sent.clear();
       other.request();

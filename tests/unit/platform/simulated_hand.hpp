@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "firmware/platform/hand_drives.hpp"
+#include "ligature_source_dir.hpp"
 #include "protocol/can/remote.hpp"
 #include "protocol/device/device_file.hpp"
 #include "tests/unit/platform/fake_bus.hpp"

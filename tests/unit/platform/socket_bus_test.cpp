@@ -21,6 +21,7 @@
 
 #include "firmware/platform/bus_wait.hpp"
 #include "firmware/platform/moteus_link.hpp"
+#include "ligature_source_dir.hpp"
 #include "protocol/can/local_wire.hpp"
 #include "protocol/device/device_file.hpp"
 #include "tests/support/temp_folder.hpp"

@@ -15,13 +15,13 @@ namespace {
 
 Vec column(const Mat& m, int k) { return k == 0 ? m.x : k == 1 ? m.y : m.z; }
 
-struct Dense {
+struct WholeMatrix {
   Eigen::MatrixXd a;
   Eigen::VectorXd r;
 };
 
-Dense dense(const BandSolver& s, int n) {
-  Dense d{Eigen::MatrixXd::Zero(3 * n, 3 * n), Eigen::VectorXd(3 * n)};
+WholeMatrix dense(const BandSolver& s, int n) {
+  WholeMatrix d{Eigen::MatrixXd::Zero(3 * n, 3 * n), Eigen::VectorXd(3 * n)};
   for (int i = 0; i < n; ++i) {
     const auto k = static_cast<std::size_t>(i);
     for (int row = 0; row < 3; ++row) {
@@ -103,7 +103,7 @@ TEST(BandSolver, AgreesWithADenseSolverForEveryCoreAndWindow) {
       for (int width = 0; width < n; width += 1 + n / 10) {
         const int first = std::max(core - width, 0), last = std::min(core + 1 + width / 2, n - 1);
         BandSolver s = random_system(n, static_cast<unsigned>(n));
-        const Dense d = dense(s, n);
+        const WholeMatrix d = dense(s, n);
         const Eigen::VectorXd truth = d.a.ldlt().solve(d.r);
         std::vector<Vec> v(static_cast<std::size_t>(n));
         s.factor(core);
@@ -120,7 +120,7 @@ TEST(BandSolver,
      AnswersForTheWindowAlone) {  // the response to a right-hand side inside the window is A^-1 restricted to it
   const int n = 40, first = 11, last = 23;
   BandSolver s = random_system(n, 5);
-  const Dense d = dense(s, n);
+  const WholeMatrix d = dense(s, n);
   std::vector<Vec> extra(n), out(n);
   Eigen::VectorXd r = Eigen::VectorXd::Zero(3 * n);
   for (int i = first; i <= last; ++i) {
@@ -147,7 +147,7 @@ TEST(BandSolver, StaysAccurateAlongALongStiffBeam) {  // unsymmetric rounding er
     s.skip[i] = 1.0;
     s.rhs[i] = make(1.0, -2.0, 0.5);
   }
-  const Dense d = dense(s, n);
+  const WholeMatrix d = dense(s, n);
   const Eigen::VectorXd truth = d.a.ldlt().solve(d.r);
   std::vector<Vec> v(n);
   s.factor(n / 2);

@@ -13,7 +13,7 @@
 namespace ligature::physics::rod {
 namespace {
 
-constexpr std::size_t kMost = 61;
+constexpr std::size_t kMostRows = 61;
 
 /// Largest error of the solution of M x = b for a known x.
 double error_of(Dense& dense, const std::vector<double>& m, std::size_t n, unsigned seed) {
@@ -38,8 +38,8 @@ double error_of(Dense& dense, const std::vector<double>& m, std::size_t n, unsig
 // All sizes up to 61, as the solver treats remainders of four and eight columns separately.
 TEST(Dense, SolvesWhatIsNearlySymmetric) {
   Dense dense;
-  dense.reserve(kMost);
-  for (std::size_t n = 1; n <= kMost; ++n) {
+  dense.reserve(kMostRows);
+  for (std::size_t n = 1; n <= kMostRows; ++n) {
     test::Random random(static_cast<unsigned>(n));
     const auto normal = [&] { return random.normal(); };
     std::vector<double> a(n * n), m(n * n);
@@ -56,7 +56,7 @@ TEST(Dense, SolvesWhatIsNearlySymmetric) {
 
 TEST(Dense, ExchangesRowsWhereAPivotVanishes) {  // a permutation matrix: every pivot is off the diagonal
   Dense dense;
-  dense.reserve(kMost);
+  dense.reserve(kMostRows);
   for (const std::size_t n : {2UL, 5UL, 16UL, 33UL}) {
     std::vector<double> m(n * n);
     for (std::size_t i = 0; i < n; ++i) m[i * n + (i + n / 2) % n] = 2.0, m[i * n + (i + n / 3) % n] += 0.1;
@@ -66,7 +66,7 @@ TEST(Dense, ExchangesRowsWhereAPivotVanishes) {  // a permutation matrix: every 
 
 TEST(Dense, SaysThatThereIsNoAnswer) {
   Dense dense;
-  dense.reserve(kMost);
+  dense.reserve(kMostRows);
   const std::size_t n = 9;
   EXPECT_EQ(error_of(dense, std::vector<double>(n * n, 0.0), n, 3), 1e9);
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "firmware/physics/rod/rod_simulation.hpp"
+#include "ligature_source_dir.hpp"
 #include "protocol/scene/scene_file.hpp"
 
 namespace ligature::test {

@@ -13,6 +13,7 @@
 #include "firmware/physics/rod/rod_simulation.hpp"
 #include "firmware/platform/sanitized.hpp"
 #include "host/knot/recognise.hpp"
+#include "ligature_source_dir.hpp"
 #include "protocol/scene/scene_file.hpp"
 
 namespace {

@@ -19,7 +19,7 @@ namespace {
 using namespace physics::rod;
 
 constexpr int kNodes = 42;
-constexpr double kDiameter_m = 3e-4, kNear_m = 3e-5;
+constexpr double kStrandDiameter_m = 3e-4, kNear_m = 3e-5;
 
 /// A thread whose nodes 0 to 20 lie along x and whose nodes 21 to 41 lie along y above them, one diameter apart each.
 /// `at_a`, `at_b`: where the strands cross, in segments from node 10 and from node 31.
@@ -31,14 +31,14 @@ struct Crossing {
 
   Crossing(double at_a, double at_b, double gap_m) {
     Material material;
-    material.radius_m = 0.5 * kDiameter_m;
-    material.length_m = (kNodes - 1) * kDiameter_m;
+    material.radius_m = 0.5 * kStrandDiameter_m;
+    material.length_m = (kNodes - 1) * kStrandDiameter_m;
     state.resize(kNodes);
     for (int i = 0; i < kNodes; ++i) {
       const auto k = static_cast<std::size_t>(i);
-      state.mesh.s[k] = i * kDiameter_m;
-      state.x[k] = i <= 20 ? make((i - 10 - at_a) * kDiameter_m, 0, 0)
-                           : make(0, (i - 31 - at_b) * kDiameter_m, kDiameter_m + gap_m);
+      state.mesh.s[k] = i * kStrandDiameter_m;
+      state.x[k] = i <= 20 ? make((i - 10 - at_a) * kStrandDiameter_m, 0, 0)
+                           : make(0, (i - 31 - at_b) * kStrandDiameter_m, kStrandDiameter_m + gap_m);
     }
     state.mesh.rebuild(material);
     contacts.reserve(kNodes, 0, kNodes);
@@ -48,7 +48,7 @@ struct Crossing {
     for (std::int32_t a = 7; a <= 13; ++a) {
       for (std::int32_t b = 28; b <= 34; ++b) {
         Candidate& pair = contacts.pairs.emplace_back();
-        pair.a = a, pair.b = b, pair.reach_m = kDiameter_m, pair.near_m = kNear_m, pair.due = -1.0;
+        pair.a = a, pair.b = b, pair.reach_m = kStrandDiameter_m, pair.near_m = kNear_m, pair.due = -1.0;
         pair.bulge_m = 1e-6;
       }
     }
@@ -87,12 +87,12 @@ std::vector<NearPair> near_pairs(Crossing& crossing) {
   for (const Candidate& pair : before) {
     const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
     const Closest c = closest(x[a], x[a + 1], x[b], x[b + 1]);
-    const double gap_m = std::sqrt(c.distance2) - kDiameter_m;
+    const double gap_m = std::sqrt(c.distance2) - kStrandDiameter_m;
     if (gap_m >= kNear_m) continue;
     const bool contact = std::any_of(contacts.begin(), contacts.end(),
                                      [&](const Contact& k) { return k.node[0] == pair.a && k.node[2] == pair.b; });
-    near.push_back(
-        {gap_m, (pair.a + c.s) * kDiameter_m, (pair.b + c.t) * kDiameter_m, norm(pair.impulse) > 0.0, contact});
+    near.push_back({gap_m, (pair.a + c.s) * kStrandDiameter_m, (pair.b + c.t) * kStrandDiameter_m,
+                    norm(pair.impulse) > 0.0, contact});
   }
   return near;
 }
@@ -105,13 +105,13 @@ TEST(Places, OnlyAPairWithoutImpulseIsLeftOutForANearerOne) {
     Crossing crossing(at_a, at_b, -1e-6);
     for (auto& x : crossing.state.x) {  // bends the strands, so that each pair has a normal of its own
       const auto way = random.normals();
-      x += 0.02 * kDiameter_m * make(way[0], way[1], way[2]);
+      x += 0.02 * kStrandDiameter_m * make(way[0], way[1], way[2]);
     }
     for (Candidate& pair : crossing.contacts.pairs) {
       pair.bulge_m = 0.0;  // contact between chords
       if (!random.happens(0.3)) continue;
       pair.impulse = make(0, 0, 1e-6);
-      pair.touch.begin((pair.a + 0.5) * kDiameter_m, (pair.b + 0.5) * kDiameter_m);
+      pair.touch.begin((pair.a + 0.5) * kStrandDiameter_m, (pair.b + 0.5) * kStrandDiameter_m);
     }
     const auto near = near_pairs(crossing);
     for (const NearPair& one : near) {
@@ -120,10 +120,10 @@ TEST(Places, OnlyAPairWithoutImpulseIsLeftOutForANearerOne) {
       ++left_out;
       ASSERT_FALSE(one.loaded) << round;
       ASSERT_TRUE(std::any_of(near.begin(), near.end(), [&](const NearPair& other) {
-        const double stays_m = other.loaded ? tuning.place_stays_d * kDiameter_m : 0.0;
+        const double stays_m = other.loaded ? tuning.place_stays_d * kStrandDiameter_m : 0.0;
         return other.contact && other.gap_m <= one.gap_m + stays_m + 1e-12 &&
-               std::abs(other.a_m - one.a_m) < tuning.place_d * kDiameter_m &&
-               std::abs(other.b_m - one.b_m) < tuning.place_d * kDiameter_m;
+               std::abs(other.a_m - one.a_m) < tuning.place_d * kStrandDiameter_m &&
+               std::abs(other.b_m - one.b_m) < tuning.place_d * kStrandDiameter_m;
       })) << round;
     }
   }
@@ -137,7 +137,7 @@ TEST(Places, APairThatCarriesStaysTheOnlyContact) {
   ASSERT_EQ(crossing.collect()[0].node[0], 10);
   for (Candidate& pair : crossing.contacts.pairs) {
     if (pair.a != 9 || pair.b != 31) continue;
-    pair.impulse = make(0, 0, 1e-6), pair.touch.begin(10 * kDiameter_m, 31.5 * kDiameter_m);
+    pair.impulse = make(0, 0, 1e-6), pair.touch.begin(10 * kStrandDiameter_m, 31.5 * kStrandDiameter_m);
   }
   const auto& contacts = crossing.collect();
   ASSERT_EQ(contacts.size(), 1U);

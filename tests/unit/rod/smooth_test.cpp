@@ -13,7 +13,7 @@ namespace {
 
 using namespace physics::rod;
 
-constexpr double kDiameter_m = 3e-4;
+constexpr double kCurveDiameter_m = 3e-4;
 
 State nodes_on_a_circle(int n, double radius_m, double turn) {
   State state;
@@ -38,7 +38,7 @@ TEST(Smooth, IsACircleWhereThePolygonIsOne) {
   const State state = nodes_on_a_circle(12, radius_m, turn);
   const Vec centre = make(0, 0, radius_m);
   for (std::size_t j = 1; j < 10; ++j) {
-    const SmoothSegment segment(state, j, kDiameter_m);
+    const SmoothSegment segment(state, j, kCurveDiameter_m);
     for (double s = 0.0; s <= 1.0; s += 0.125)
       EXPECT_NEAR(norm(segment.at(s) - centre), through_middles_m, 2e-3 * radius_m) << j << ' ' << s;
   }
@@ -48,7 +48,7 @@ TEST(Smooth, HasNoCorners) {
   State state = nodes_on_a_circle(9, 0.6e-3, 0.5);
   state.x[4] += make(1e-5, 4e-5, -2e-5);  // unequal lengths and turns
   for (std::size_t j = 0; j + 2 < 9; ++j) {
-    const SmoothSegment one(state, j, kDiameter_m), next(state, j + 1, kDiameter_m);
+    const SmoothSegment one(state, j, kCurveDiameter_m), next(state, j + 1, kCurveDiameter_m);
     EXPECT_LT(norm(one.at(1.0) - next.at(0.0)), 1e-12);
     const Vec a = one.along(1.0), b = next.along(0.0);
     EXPECT_LT(norm(cross(a, b)), 1e-9 * norm(a) * norm(b));
@@ -63,12 +63,13 @@ TEST(Smooth, StaysWhereASegmentIsSplit) {
   for (std::size_t i = 0; i < 10; ++i) split.x[i] = i <= 4 ? whole.x[i] : whole.x[i - 1];
   split.x[4] = 0.5 * (whole.x[3] + whole.x[4]);
   split.cut_before[3] *= 2.0, split.cut_after[4] *= 2.0;
-  const SmoothSegment one(whole, 3, kDiameter_m), first(split, 3, kDiameter_m), second(split, 4, kDiameter_m);
+  const SmoothSegment one(whole, 3, kCurveDiameter_m), first(split, 3, kCurveDiameter_m),
+      second(split, 4, kCurveDiameter_m);
   for (double s = 0.0; s <= 0.5; s += 0.0625) {
     EXPECT_LT(norm(first.at(2.0 * s) - one.at(s)), 1e-15) << s;
     EXPECT_LT(norm(second.at(2.0 * s) - one.at(0.5 + s)), 1e-15) << s;
   }
-  const SmoothSegment before(whole, 2, kDiameter_m), still(split, 2, kDiameter_m);
+  const SmoothSegment before(whole, 2, kCurveDiameter_m), still(split, 2, kCurveDiameter_m);
   for (double s = 0.0; s <= 1.0; s += 0.125) EXPECT_LT(norm(still.at(s) - before.at(s)), 1e-15) << s;
 }
 
@@ -76,7 +77,7 @@ TEST(Smooth, StaysWhereASegmentIsSplit) {
 // corner cases.
 TEST(Smooth, FourAtATimeAreAsOne) {
   test::Random random(5);
-  const auto normal = [&] { return kDiameter_m * random.normal(); };
+  const auto normal = [&] { return kCurveDiameter_m * random.normal(); };
   const auto vec = [&] { return Vec{{normal(), normal(), normal(), 0.0}}; };
   for (int round = 0; round < 200; ++round) {
     SmoothOf<Vec, double> a[4], b[4];
@@ -98,14 +99,16 @@ TEST(Smooth, FourAtATimeAreAsOne) {
     const FourClosest curves = closest(fours, others, chords);
     for (int l = 0; l < 4; ++l) {
       const Closest chord = closest(a[l].x, a[l].x + a[l].e, b[l].x, b[l].x + b[l].e);
-      EXPECT_NEAR(chords.distance2[l], chord.distance2, 1e-9 * kDiameter_m * kDiameter_m) << round << ' ' << l;
+      EXPECT_NEAR(chords.distance2[l], chord.distance2, 1e-9 * kCurveDiameter_m * kCurveDiameter_m)
+          << round << ' ' << l;
       // Case 1 has parallel segments, where any point is correct.
       EXPECT_NEAR(chords.s[l], chord.s, l == 1 ? 1.0 : 1e-6) << round << ' ' << l;
       if (l == 2) continue;  // case 2 has a segment of zero length, whose curve has no tangent at its middle
       const Closest curve = closest(a[l], b[l], Closest{chords.s[l], chords.t[l], 0.0, Vec{}});
-      EXPECT_NEAR(curves.distance2[l], curve.distance2, 1e-9 * kDiameter_m * kDiameter_m) << round << ' ' << l;
+      EXPECT_NEAR(curves.distance2[l], curve.distance2, 1e-9 * kCurveDiameter_m * kCurveDiameter_m)
+          << round << ' ' << l;
       EXPECT_NEAR(curves.t[l], curve.t, 1e-6) << round << ' ' << l;
-      EXPECT_NEAR(curves.between.y[l], curve.between[1], 1e-6 * kDiameter_m) << round << ' ' << l;
+      EXPECT_NEAR(curves.between.y[l], curve.between[1], 1e-6 * kCurveDiameter_m) << round << ' ' << l;
     }
   }
 }
@@ -115,15 +118,15 @@ TEST(Smooth, ClosestPointsOfBentStrands) {
   for (int k = 0; k < 40; ++k) {
     const double yaw = 0.05 * k + 0.6, c = std::cos(yaw), s = std::sin(yaw), along_m = 1e-5 * (k % 13 - 6);
     State b = nodes_on_a_circle(8, 0.6e-3, 0.5);
-    for (auto& x : b.x) x = make(c * x[0] + along_m, s * x[0], kDiameter_m + 0.5 * along_m - x[2]);
+    for (auto& x : b.x) x = make(c * x[0] + along_m, s * x[0], kCurveDiameter_m + 0.5 * along_m - x[2]);
     for (std::size_t i = 2; i < 5; ++i) {
       for (std::size_t j = 2; j < 5; ++j) {
-        const SmoothSegment one(a, i, kDiameter_m), other(b, j, kDiameter_m);
+        const SmoothSegment one(a, i, kCurveDiameter_m), other(b, j, kCurveDiameter_m);
         const Closest chords = closest(a.x[i], a.x[i + 1], b.x[j], b.x[j + 1]);
         const double least = closest_by_trying(one, other);
         // Skipped: too far apart for a contact, or a deeper overlap than occurs.
-        if (least > 1.2 * kDiameter_m || least < 0.9 * kDiameter_m) continue;
-        EXPECT_NEAR(std::sqrt(closest(one, other, chords).distance2), least, 1e-2 * kDiameter_m) << k;
+        if (least > 1.2 * kCurveDiameter_m || least < 0.9 * kCurveDiameter_m) continue;
+        EXPECT_NEAR(std::sqrt(closest(one, other, chords).distance2), least, 1e-2 * kCurveDiameter_m) << k;
         EXPECT_LT(std::abs(least - std::sqrt(chords.distance2)), one.bulge() + other.bulge() + 1e-9);
       }
     }
@@ -134,8 +137,8 @@ TEST(Smooth, ClosestPointsOfBentStrands) {
 // other.
 TEST(Smooth, CutsNoMoreThanStrandsCanSpare) {
   const State state = nodes_on_a_circle(8, 12e-3, 0.5);
-  const SmoothSegment segment(state, 3, kDiameter_m);
-  EXPECT_NEAR(norm(segment.at(0.0) - state.x[3]), physics::rod::tuning.most_cut_d * kDiameter_m, 1e-9);
+  const SmoothSegment segment(state, 3, kCurveDiameter_m);
+  EXPECT_NEAR(norm(segment.at(0.0) - state.x[3]), physics::rod::tuning.most_cut_d * kCurveDiameter_m, 1e-9);
 }
 
 // A straight strand slides along a bent one: the contact normal turns continuously. Between chords it would jump at
@@ -147,7 +150,7 @@ TEST(Smooth, NormalTurnsSteadily) {
     Vec before{};
     double largest = 0.0;
     for (double angle = -1.0; angle < 1.0; angle += 0.005) {  // on the inner side of the bend
-      const double r = 1e-3 - kDiameter_m;
+      const double r = 1e-3 - kCurveDiameter_m;
       const Vec at = make(r * std::sin(angle), 0, 1e-3 - r * std::cos(angle));
       State strand;
       strand.resize(4);
@@ -156,7 +159,8 @@ TEST(Smooth, NormalTurnsSteadily) {
       nearest.distance2 = 1.0;
       for (std::size_t j = 1; j + 2 < 14; ++j) {
         Closest c = closest(bent.x[j], bent.x[j + 1], strand.x[1], strand.x[2]);
-        if (smooth) c = closest(SmoothSegment(bent, j, kDiameter_m), SmoothSegment(strand, 1, kDiameter_m), c);
+        if (smooth)
+          c = closest(SmoothSegment(bent, j, kCurveDiameter_m), SmoothSegment(strand, 1, kCurveDiameter_m), c);
         if (c.distance2 < nearest.distance2) nearest = c;
       }
       const Vec normal = (1.0 / norm(nearest.between)) * nearest.between;

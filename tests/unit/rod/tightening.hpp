@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "firmware/physics/rod/rod_simulation.hpp"
+#include "ligature_source_dir.hpp"
 #include "protocol/scene/scene_file.hpp"
 
 namespace ligature::test {

@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "ligature_source_dir.hpp"
 #include "protocol/scene/csv.hpp"
 #include "tests/support/temp_folder.hpp"
 
@@ -24,7 +25,7 @@ std::string write(const std::string& text) {
   return path;
 }
 
-std::string why_refused(const std::string& rows) {
+std::string why_script_refused(const std::string& rows) {
   const auto read = load_gripper_script(write("# a comment\ntime,hand,x,y,z,grip\n" + rows));
   const auto* error = std::get_if<Error>(&read);
   return error ? error->text : "";
@@ -59,7 +60,7 @@ TEST(GripperScript, RefusesABadRowByItsLine) {
       {"", "found no rows"},
   };
   for (const auto& c : kCases)
-    EXPECT_NE(why_refused(c.rows).find(c.says), std::string::npos) << c.rows << why_refused(c.rows);
+    EXPECT_NE(why_script_refused(c.rows).find(c.says), std::string::npos) << c.rows << why_script_refused(c.rows);
   const auto header = load_gripper_script(write("t,hand,x,y,z,grip\n0,L,0,0,0,1\n"));
   EXPECT_NE(std::get<Error>(header).text.find(":1: found 't,hand,x,y,z,grip', allowed the header"), std::string::npos);
   EXPECT_NE(std::get<Error>(load_gripper_script("no/such.csv")).text.find("cannot be read"), std::string::npos);
@@ -128,8 +129,8 @@ TEST(GripperScript, AByteOrderMarkIsNoData) {
 }
 
 TEST(GripperScript, WhatIsQuotedIsShortAndHasNoControlCharacters) {
-  EXPECT_NE(why_refused("0,L,0,\x1B[2J,0,1\n").find("found '\\x1B[2J'"), std::string::npos);
-  EXPECT_LT(why_refused("0,L,0," + std::string(9000, '9') + ",0,1\n").size(), 250u);
+  EXPECT_NE(why_script_refused("0,L,0,\x1B[2J,0,1\n").find("found '\\x1B[2J'"), std::string::npos);
+  EXPECT_LT(why_script_refused("0,L,0," + std::string(9000, '9') + ",0,1\n").size(), 250u);
 }
 
 TEST(GripperScript, SampleRestsAtKeysAndHoldsOutside) {

@@ -1,6 +1,7 @@
 // A scene read back from a recording equals the scene that was run.
 #include <gtest/gtest.h>
 
+#include "ligature_source_dir.hpp"
 #include "protocol/scene/recorded_scene.hpp"
 #include "protocol/scene/scene_file.hpp"
 #include "protocol/scene/text_file.hpp"

@@ -10,6 +10,7 @@
 #include <set>
 #include <string>
 
+#include "ligature_source_dir.hpp"
 #include "protocol/scene/rod_keys.hpp"
 #include "protocol/scene/scene_file.hpp"
 #include "tests/support/temp_folder.hpp"

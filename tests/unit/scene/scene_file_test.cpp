@@ -8,6 +8,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "ligature_source_dir.hpp"
 #include "protocol/scene/fault_script.hpp"
 #include "protocol/scene/gripper_script.hpp"
 #include "protocol/scene/polyline.hpp"

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "ligature_source_dir.hpp"
 #include "protocol/device/device_file.hpp"
 #include "protocol/device/device_keys.hpp"
 #include "protocol/scene/csv.hpp"

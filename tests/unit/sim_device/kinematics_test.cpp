@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ligature_source_dir.hpp"
 #include "protocol/device/device_file.hpp"
 #include "sim_device/plant.hpp"
 #include "tests/support/random.hpp"

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ligature_source_dir.hpp"
 #include "protocol/scene/gripper_script.hpp"
 #include "tests/unit/sim_device/omni.hpp"
 

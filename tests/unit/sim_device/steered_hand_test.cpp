@@ -100,20 +100,20 @@ TEST(SteeredHand, KeepsToTheLimitsOfAnArmWhateverIsWished) {
   const ArmLimits limits;
   test::Random random(20);
   SteeredHand hand(Linkage{});
-  constexpr double kStep_s = 1e-3;
+  constexpr double kTick_s = 1e-3;
   double wish_at_s = 0.0;
   Intent before = hand.at(0.0);
-  for (double t_s = 0.0; t_s < 120.0; t_s += kStep_s) {
+  for (double t_s = 0.0; t_s < 120.0; t_s += kTick_s) {
     if (t_s >= wish_at_s) {
       const Vec3 offset{random.in(-0.1, 0.1), random.in(-0.1, 0.1), random.in(-0.1, 0.1)};
       hand.wish(t_s, home_tip_D_m() + offset, random.happens(0.5), false);
       wish_at_s = t_s + random.in(0.0, 0.5);
     }
-    const Intent now = hand.at(t_s + kStep_s);
+    const Intent now = hand.at(t_s + kTick_s);
     for (int axis = 0; axis < 3; ++axis) {
       ASSERT_LE(std::abs(now.v_DH[axis]), limits.speed_m_per_s * (1.0 + 1e-6)) << t_s;
-      ASSERT_LE(std::abs(now.v_DH[axis] - before.v_DH[axis]), limits.acceleration_m_per_s2 * kStep_s * (1.0 + 1e-3));
-      ASSERT_LE(std::abs(now.p_DH[axis] - before.p_DH[axis]), limits.speed_m_per_s * kStep_s * (1.0 + 1e-3));
+      ASSERT_LE(std::abs(now.v_DH[axis] - before.v_DH[axis]), limits.acceleration_m_per_s2 * kTick_s * (1.0 + 1e-3));
+      ASSERT_LE(std::abs(now.p_DH[axis] - before.p_DH[axis]), limits.speed_m_per_s * kTick_s * (1.0 + 1e-3));
     }
     before = now;
   }

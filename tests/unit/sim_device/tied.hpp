@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "firmware/physics/simulation.hpp"
+#include "ligature_source_dir.hpp"
 #include "protocol/scene/scene_file.hpp"
 #include "sim_device/operator/knot_tier.hpp"
 #include "tests/support/knot_in.hpp"

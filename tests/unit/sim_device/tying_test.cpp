@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ligature_source_dir.hpp"
 #include "protocol/scene/scene_file.hpp"
 #include "sim_device/tying/tying_link.hpp"
 #include "sim_device/tying/tying_plan.hpp"

@@ -9,6 +9,7 @@
 #include "host/export.hpp"
 #include "host/log_reader.hpp"
 #include "host/view/log_survey.hpp"
+#include "ligature_source_dir.hpp"
 #include "tests/unit/host/synthetic_log.hpp"
 
 namespace ligature::host::view {

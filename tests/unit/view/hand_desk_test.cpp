@@ -20,14 +20,14 @@ workspace_origin_m = [0.5, -0.4, 3.2]
 constexpr std::int64_t kSession = 77;
 
 /// A desk that has received a scene and the state of a free left hand, 0.1 m above its home in the world.
-struct Desk {
+struct HandsOnDesk {
   Access access{"0123456789abcdef", true};
   std::vector<ligature_msg::hand_wish_t> sent;
   HandDesk desk{access, [this](const auto& wish) { sent.push_back(wish); }};
   HandDesk::Clock::time_point now{};
   ligature_msg::hand_state_t state{};
 
-  Desk() {
+  HandsOnDesk() {
     ligature_msg::status_t status{};
     status.scene_file = "test.toml";
     status.scene_toml = kScene;
@@ -50,7 +50,7 @@ struct Desk {
 };
 
 TEST(HandDesk, APageTakesAFreeHandWhereItIsAndWishesItElsewhere) {
-  Desk d;
+  HandsOnDesk d;
   const json answer = d.take();
   EXPECT_EQ(answer["accepted"], true);
   EXPECT_EQ(answer["id"], 5);
@@ -74,7 +74,7 @@ TEST(HandDesk, APageTakesAFreeHandWhereItIsAndWishesItElsewhere) {
 }
 
 TEST(HandDesk, WithoutTheTokenNothingIsSent) {
-  Desk d;
+  HandsOnDesk d;
   for (const char* token : {"", "x", "0123456789abcdeX"}) {
     const json answer = d.desk.request(1, {{"hand", "take"}, {"side", "left"}, {"id", 1}, {"token", token}}, d.now);
     EXPECT_EQ(answer["accepted"], false);
@@ -92,7 +92,7 @@ TEST(HandDesk, WithoutTheTokenNothingIsSent) {
 }
 
 TEST(HandDesk, AHandHasOnePage) {
-  Desk d;
+  HandsOnDesk d;
   ASSERT_EQ(d.take(1)["accepted"], true);
   const json second = d.take(2);
   EXPECT_EQ(second["accepted"], false);
@@ -110,7 +110,7 @@ TEST(HandDesk, AHandHasOnePage) {
 }
 
 TEST(HandDesk, AHandThatIsJustGivenBackIsFreeOnceItsDeviceSaysSo) {
-  Desk d;
+  HandsOnDesk d;
   ASSERT_EQ(d.take(1)["accepted"], true);
   d.desk.end(1);
   // Two old states come late: one was sent before the hand was taken, the other before the device learned that the hand
@@ -132,7 +132,7 @@ TEST(HandDesk, AHandThatIsJustGivenBackIsFreeOnceItsDeviceSaysSo) {
 }
 
 TEST(HandDesk, AHandWhoseDeviceHeardNothingOfItsPageIsFreeAfterAFewStates) {
-  Desk d;
+  HandsOnDesk d;
   ASSERT_EQ(d.take(1)["accepted"], true);
   d.desk.end(1);
   for (int k = 0; k < 3; ++k) d.hear();
@@ -140,7 +140,7 @@ TEST(HandDesk, AHandWhoseDeviceHeardNothingOfItsPageIsFreeAfterAFewStates) {
 }
 
 TEST(HandDesk, NoHandIsTakenThatDoesNotListenIsElsewhereOrHasNoScene) {
-  Desk d;
+  HandsOnDesk d;
   EXPECT_NE(d.ask(1, {{"hand", "take"}, {"side", "right"}})["text"].get<std::string>().find("--operator page"),
             std::string::npos);
   d.state.owner = 99;
@@ -160,7 +160,7 @@ TEST(HandDesk, NoHandIsTakenThatDoesNotListenIsElsewhereOrHasNoScene) {
 }
 
 TEST(HandDesk, WhoseConnectionEndsGivesItsHandBackWithTheDeadManLetGo) {
-  Desk d;
+  HandsOnDesk d;
   ASSERT_EQ(d.take(1)["accepted"], true);
   d.desk.end(2);
   EXPECT_EQ(d.sent.size(), 1U);
@@ -173,7 +173,7 @@ TEST(HandDesk, WhoseConnectionEndsGivesItsHandBackWithTheDeadManLetGo) {
 }
 
 TEST(HandDesk, TheDeviceSaysWhoHasTheHand) {
-  Desk d;
+  HandsOnDesk d;
   ASSERT_EQ(d.take(1)["accepted"], true);
   d.hear();  // a state from before the first target was sent
   EXPECT_EQ(d.desk.told(d.now)["left"]["page"], 1);
@@ -190,7 +190,7 @@ TEST(HandDesk, TheDeviceSaysWhoHasTheHand) {
 }
 
 TEST(HandDesk, ASilenceThatEndedTheSessionTakesTheHandAway) {
-  Desk d;
+  HandsOnDesk d;
   ASSERT_EQ(d.take(1)["accepted"], true);
   d.state.session = kSession + 1;
   d.hear();
@@ -199,7 +199,7 @@ TEST(HandDesk, ASilenceThatEndedTheSessionTakesTheHandAway) {
 }
 
 TEST(HandDesk, WhatIsNoPlaceIsNotWished) {
-  Desk d;
+  HandsOnDesk d;
   ASSERT_EQ(d.take(1)["accepted"], true);
   const auto before = d.sent.size();
   for (const json& p : {json(), json("x"), json({1, 2}), json({1, 2, "3"}), json({1, 2, 3, 4}), json({1, 2, nullptr})})

@@ -47,14 +47,15 @@ TEST(Picture, TellsEachPageEachBinOnce) {
       told.insert(told.end(), bins.begin(), bins.end());
       return !bins.empty();
     };
-    constexpr int kBatches = 5000;
-    for (int i = 0; i < kBatches; ++i) {
+    constexpr int kManyBatches = 5000;
+    for (int i = 0; i < kManyBatches; ++i) {
       take(picture, kTicksChannel, test::batch_of(1, 20 * i, 20));
       if (i % batches_a_frame == 0) ask();
     }
     while (ask()) {
     }
-    ASSERT_EQ(std::ssize(told), 20 * kBatches / kTicksPerBin - 1) << batches_a_frame;  // the last bin is not complete
+    ASSERT_EQ(std::ssize(told), 20 * kManyBatches / kTicksPerBin - 1)
+        << batches_a_frame;  // the last bin is not complete
     for (std::size_t i = 0; i < told.size(); ++i) ASSERT_EQ(told[i], static_cast<std::int64_t>(i)) << batches_a_frame;
   }
 }
