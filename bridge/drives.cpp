@@ -95,7 +95,7 @@ void Drives::poll(Time now) {
   for (std::size_t i = 0; is_on_ && i < nodes_.size(); ++i) {
     const Time due = nodes_[i].next_deadline();
     if (due > now_) continue;
-    nodes_[i].poll(now_, outgoing_);
+    nodes_[i].poll(now_, {}, outgoing_);
     send(i, due);
   }
 }

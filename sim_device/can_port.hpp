@@ -8,7 +8,8 @@ namespace ligature::sim {
 
 class CanPort final : public Port {
  public:
-  [[nodiscard]] static std::variant<std::unique_ptr<Port>, std::string> open(const std::string& interface);
+  [[nodiscard]] static std::variant<std::unique_ptr<Port>, std::string> open(const std::string& interface,
+                                                                             can::Network network);
 
   void add_descriptors(std::vector<pollfd>& fds) const override { fds.push_back({socket_.get(), POLLIN, 0}); }
   void receive(std::vector<Received>& frames, std::vector<int>& left) override;
@@ -18,10 +19,12 @@ class CanPort final : public Port {
   [[nodiscard]] long dropped_frames() const noexcept override { return dropped_; }
 
  private:
-  CanPort(FileDescriptor socket, bool is_hardware) : socket_(std::move(socket)), is_hardware_(is_hardware) {}
+  CanPort(FileDescriptor socket, bool is_hardware, can::Network network)
+      : socket_(std::move(socket)), is_hardware_(is_hardware), network_(network) {}
 
   FileDescriptor socket_;
   bool is_hardware_;
+  can::Network network_;
   long dropped_ = 0;
 };
 

@@ -67,6 +67,14 @@ void DriveNode::on_frame(const can::Frame& frame, Time now, const Sensed& sensed
   }
 }
 
+Meaning DriveNode::meaning_of(const can::Frame& frame) const noexcept {
+  if (can::is_sync(frame)) return Meaning::kPeriod;
+  if (frame.id == can::kNmtCobId.value) return Meaning::kState;
+  const auto address = can::address_of(frame.id);
+  if (address && address->service == can::Service::kRpdo1) return Meaning::kTorqueAtSync;
+  return address && address->service == can::Service::kHeartbeat ? Meaning::kSilent : Meaning::kOther;
+}
+
 void DriveNode::on_nmt(const can::NmtMessage& message, Time now, std::vector<can::Frame>& out) {
   switch (message.command) {
     case can::NmtCommand::kStart:
@@ -164,7 +172,7 @@ void DriveNode::on_master_heartbeat(Time now) {
   if (watched) master_watch_.arm(now + silence);
 }
 
-void DriveNode::poll(Time now, std::vector<can::Frame>& out) {
+void DriveNode::poll(Time now, const Sensed&, std::vector<can::Frame>& out) {
   if (rpdo_watch_.is_over(now)) {
     rpdo_watch_.disarm();
     trip(can::emcy::kRpdoTimeout, out);

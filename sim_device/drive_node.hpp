@@ -10,40 +10,29 @@
 #include "protocol/can/emcy.hpp"
 #include "protocol/can/heartbeat.hpp"
 #include "protocol/can/nmt.hpp"
-#include "sim_device/deadline.hpp"
+#include "sim_device/bus_node.hpp"
 #include "sim_device/object_dictionary.hpp"
 
 namespace ligature::sim {
 
-/// Sensor readings of a drive at one moment.
-struct Sensed {
-  std::int32_t position_counts = 0;
-  std::uint16_t buttons = 0;
-  bool guarded = false;              ///< the power stage limits the torque to protect the winding
-  std::int16_t torque_permille = 0;  ///< the limited torque, if guarded
-};
-
-struct DriveStats {
-  std::int64_t watchdog_trips = 0;      ///< times that the drive removed torque by itself
-  std::int64_t syncs_without_rpdo = 0;  ///< SYNCs without a new RPDO while in Operation Enabled
-  std::int64_t late_rpdos = 0;  ///< RPDOs replaced by a second one before the next SYNC, so that they had no effect
-};
-
 /// At a SYNC the drive first samples its inputs for the TPDO, then applies the RPDO that it holds; an RPDO that comes
 /// after the SYNC waits for the next one. If RPDOs (0x1400:05) or the master's heartbeat (0x1016:01) stay away too
-/// long, the drive removes its torque at once, sends an EMCY, and latches a fault that only a fault reset clears. Every
-/// call appends the frames that the drive sends to `out`. Time must not run backwards.
-class DriveNode {
+/// long, the drive removes its torque at once, sends an EMCY, and latches a fault that only a fault reset clears.
+class DriveNode final : public BusNode {
  public:
-  explicit DriveNode(can::NodeId id, const DriveConstants& constants = {}) : id_(id), objects_(id, constants) {}
+  explicit DriveNode(can::NodeId id, const DriveConstants& constants = {})
+      : id_(id), constants_(constants), objects_(id, constants) {}
 
-  void power_on(Time now, std::vector<can::Frame>& out);
-  void on_frame(const can::Frame& frame, Time now, const Sensed& sensed, std::vector<can::Frame>& out);
-  /// Checks watchdogs and sends the drive's heartbeat if due. Call again at next_deadline().
-  void poll(Time now, std::vector<can::Frame>& out);
-  [[nodiscard]] Time next_deadline() const noexcept;
-  /// Power off: no torque from now on.
-  void power_off() noexcept;
+  void power_on(Time now, std::vector<can::Frame>& out) override;
+  void power_off() noexcept override;
+  void on_frame(const can::Frame& frame, Time now, const Sensed& sensed, std::vector<can::Frame>& out) override;
+  void poll(Time now, const Sensed& sensed, std::vector<can::Frame>& out) override;
+  [[nodiscard]] Time next_deadline() const noexcept override;
+  [[nodiscard]] Meaning meaning_of(const can::Frame& frame) const noexcept override;
+  [[nodiscard]] double torque_Nm() const noexcept override { return constants_.torque_Nm(torque_permille()); }
+  [[nodiscard]] bool is_enabled() const noexcept override { return state_ == can::cia402::State::kOperationEnabled; }
+  [[nodiscard]] bool has_fault() const noexcept override { return state_ == can::cia402::State::kFault; }
+  [[nodiscard]] DriveStats stats() const noexcept override { return stats_; }
   /// Injects a fault: while the power stage is on, the drive makes more torque than commanded, by this amount.
   void go_astray(std::int16_t by_permille) noexcept { astray_permille_ = by_permille; }
 
@@ -52,7 +41,6 @@ class DriveNode {
   [[nodiscard]] can::NmtState nmt_state() const noexcept { return nmt_; }
   /// Torque that the motor makes now, per mille of rated torque.
   [[nodiscard]] std::int16_t torque_permille() const noexcept;
-  [[nodiscard]] const DriveStats& stats() const noexcept { return stats_; }
 
  private:
   void on_nmt(const can::NmtMessage& message, Time now, std::vector<can::Frame>& out);
@@ -70,6 +58,7 @@ class DriveNode {
   [[nodiscard]] bool is_operational() const noexcept { return nmt_ == can::NmtState::kOperational; }
 
   can::NodeId id_;
+  DriveConstants constants_;
   ObjectDictionary objects_;
   can::NmtState nmt_ = can::NmtState::kBootUp;
   can::cia402::State state_ = can::cia402::State::kNotReadyToSwitchOn;

@@ -22,7 +22,8 @@ void EventLoop::serve(Time now) {
   for (auto first = received_.begin(); first != received_.end();) {  // frames of one client are consecutive
     const auto last =
         std::find_if(first, received_.end(), [&](const Received& r) { return r.client != first->client; });
-    const std::vector<Time> times = arrival_times({first, last}, last_look_, now, HandDevice::kPeriod);
+    const std::vector<Time> times = arrival_times({first, last}, last_look_, now, HandDevice::kPeriod,
+                                                  [&](const can::Frame& f) { return device_.begins_period(f); });
     if (times.front() != now) ++stats_.stalls;
     for (std::size_t i = 0; first != last; ++first, ++i) {
       device_.submit(first->frame, HandDevice::kFirstClient + first->client, times[i]);

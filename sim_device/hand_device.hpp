@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "sim_device/drive_node.hpp"
@@ -28,6 +29,8 @@ struct BusStats {
   Time worst_rpdo{};          ///< latest end of an RPDO after the end of its SYNC; must stay below one period
 };
 
+using BusNodes = std::array<std::unique_ptr<BusNode>, 3>;
+
 class HandDevice {
  public:
   static constexpr int kFirstClient = 3;
@@ -37,6 +40,8 @@ class HandDevice {
 
   HandDevice(OperatorPath path, Time now, bool charge_bus_time = true);
   HandDevice(std::unique_ptr<Intention> intention, Time now, const Body& body = {}, bool charge_bus_time = true);
+  /// @param drives  waist, shoulder, elbow, which also has the stylus' buttons
+  HandDevice(std::unique_ptr<Intention> intention, Time now, const Body& body, bool charge_bus_time, BusNodes drives);
 
   /// A client queues a frame at time `when`; per client, time must not decrease.
   void submit(const can::Frame& frame, int client, Time when);
@@ -54,11 +59,16 @@ class HandDevice {
   void power_off() noexcept;
   /// Power-cycles one drive.
   void restart(std::size_t drive, Time now);
-  void lead_astray(std::size_t drive, std::int16_t by_permille) noexcept { drives_[drive].go_astray(by_permille); }
+  void lead_astray(std::size_t drive, std::int16_t by_permille) { cia402(drive).go_astray(by_permille); }
 
+  [[nodiscard]] bool begins_period(const can::Frame& frame) const noexcept {
+    return drives_[0]->meaning_of(frame) == Meaning::kPeriod;
+  }
   [[nodiscard]] std::array<std::int16_t, 3> torque_permille() const noexcept;
   [[nodiscard]] const Mechanics& mechanics() const noexcept { return mechanics_; }
-  [[nodiscard]] const std::array<DriveNode, 3>& drives() const noexcept { return drives_; }
+  [[nodiscard]] const BusNodes& drives() const noexcept { return drives_; }
+  /// @throw std::bad_cast unless the drives are of CiA 402
+  [[nodiscard]] DriveNode& cia402(std::size_t drive) { return dynamic_cast<DriveNode&>(*drives_[drive]); }
   [[nodiscard]] const WireStats& wire_stats() const noexcept { return wire_.stats(); }
   [[nodiscard]] const BusStats& bus_stats() const noexcept { return bus_; }
   /// Fraction of the time between the first and the last SYNC in which the bus was busy; 0 with fewer than two SYNCs.
@@ -66,18 +76,22 @@ class HandDevice {
 
  private:
   void hear(const Transmission& heard);
+  [[nodiscard]] Sensed sensed(std::size_t drive) const noexcept;
   void poll(Time now);
   void move(Time now) noexcept;
   void send(std::size_t drive, Time now);
-  void note(const can::Frame& frame, Time end) noexcept;
+  void note(Meaning meaning, Time end) noexcept;
+  void feel_drives(Meaning meaning, Time end) noexcept;
 
   Wire wire_;
   Mechanics mechanics_;
-  std::array<DriveNode, 3> drives_;
+  BusNodes drives_;
   std::vector<Delivery> deliveries_;
   std::vector<can::Frame> outgoing_;  // frames that a drive's reaction produces; a member to avoid allocations
   BusStats bus_;
   Time now_;
+  int regular_periods_ = 0;  // with a torque each, all drives on
+  bool had_torque_ = false;  // since the last period began
 };
 
 }  // namespace ligature::sim

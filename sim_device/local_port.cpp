@@ -34,7 +34,7 @@ std::string clear_way(const sockaddr_un& address) {
 
 }  // namespace
 
-std::variant<std::unique_ptr<Port>, std::string> LocalPort::open(const std::string& path) {
+std::variant<std::unique_ptr<Port>, std::string> LocalPort::open(const std::string& path, can::Network network) {
   const auto refuse = [&](const std::string& why) { return "--bus local:" + path + ": " + why; };
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
@@ -51,7 +51,7 @@ std::variant<std::unique_ptr<Port>, std::string> LocalPort::open(const std::stri
       listen(listener.get(), HandDevice::kMaxClients) != 0 || stat(path.c_str(), &info) != 0) {
     return refuse(std::string(std::strerror(errno)) + ", allowed a path in a folder that exists and can be written");
   }
-  return std::unique_ptr<Port>(new LocalPort(path, std::move(listener), info.st_ino));
+  return std::unique_ptr<Port>(new LocalPort(path, std::move(listener), info.st_ino, network));
 }
 
 LocalPort::~LocalPort() {
@@ -82,11 +82,12 @@ void LocalPort::accept_clients() {
 
 bool LocalPort::read_all(std::size_t slot, std::vector<Received>& frames) {
   for (;;) {
-    std::array<std::uint8_t, can::kLocalPacketBytes + 1> packet;  // one byte more, to detect packets that are too long
+    std::array<std::uint8_t, can::kLocalFdPacketBytes + 1>
+        packet;  // one byte more, to detect packets that are too long
     const ssize_t n = recv(clients_[slot].get(), packet.data(), packet.size(), 0);
     if (n < 0) return errno == EAGAIN || errno == EINTR;
     if (n == 0) return false;
-    const auto frame = can::from_packet({packet.data(), static_cast<std::size_t>(n)});
+    const auto frame = can::from_packet({packet.data(), static_cast<std::size_t>(n)}, network_);
     if (frame) frames.push_back({*frame, static_cast<int>(slot)});  // malformed packets are ignored
   }
 }

@@ -15,7 +15,8 @@ namespace ligature::sim {
 class LocalPort final : public Port {
  public:
   /// Listens at path. Replaces a socket on which nobody listens; refuses one in use, and any other kind of file.
-  [[nodiscard]] static std::variant<std::unique_ptr<Port>, std::string> open(const std::string& path);
+  [[nodiscard]] static std::variant<std::unique_ptr<Port>, std::string> open(
+      const std::string& path, can::Network network = can::Network::kClassic);
   ~LocalPort() override;  ///< removes the socket file, unless it has been replaced meanwhile
 
   void add_descriptors(std::vector<pollfd>& fds) const override;
@@ -26,8 +27,8 @@ class LocalPort final : public Port {
   [[nodiscard]] long dropped_frames() const noexcept override { return dropped_; }
 
  private:
-  LocalPort(std::string path, FileDescriptor listener, ino_t inode)
-      : path_(std::move(path)), listener_(std::move(listener)), inode_(inode) {}
+  LocalPort(std::string path, FileDescriptor listener, ino_t inode, can::Network network)
+      : path_(std::move(path)), listener_(std::move(listener)), inode_(inode), network_(network) {}
   void accept_clients();
   /// Reads everything from one client; false if it has disconnected.
   bool read_all(std::size_t slot, std::vector<Received>& frames);
@@ -35,6 +36,7 @@ class LocalPort final : public Port {
   std::string path_;
   FileDescriptor listener_;
   ino_t inode_;
+  can::Network network_;
   std::array<FileDescriptor, HandDevice::kMaxClients> clients_;
   long dropped_ = 0;
 };

@@ -13,6 +13,7 @@
 #include "sim_device/narrator.hpp"
 #include "sim_device/options.hpp"
 #include "sim_device/scheduling.hpp"
+#include "sim_device/shelf_drives.hpp"
 #include "sim_device/stats_file.hpp"
 
 namespace {
@@ -52,13 +53,15 @@ int refuse(const std::string& why) {
   return kBadInput;
 }
 
-std::variant<sim::Body, std::string> read_body(const sim::Options& o) {
-  sim::Body body = sim::Body::of(device::omni());
-  if (!o.device.empty()) {
-    const auto read = device::load_device(o.device);
-    if (const auto* e = std::get_if<scene::Error>(&read)) return e->text;
-    body = sim::Body::of(std::get<device::Device>(read));
-  }
+std::variant<device::Device, std::string> read_record(const sim::Options& o) {
+  if (o.device.empty()) return device::omni();
+  auto read = device::load_device(o.device);
+  if (const auto* e = std::get_if<scene::Error>(&read)) return e->text;
+  return std::get<device::Device>(std::move(read));
+}
+
+sim::Body body_of(const sim::Options& o, const device::Device& record) {
+  sim::Body body = sim::Body::of(record);
   body.hand = sim::hand_of(o.hold).value();
   if (o.links_bend) body.compliance = sim::Compliance::of_the_class();
   body.plant.gravity_compensation = 1.0 - o.gravity_share;
@@ -66,8 +69,12 @@ std::variant<sim::Body, std::string> read_body(const sim::Options& o) {
 }
 
 /// The fault script as an injector; none if no script is given.
-std::variant<std::optional<sim::FaultInjector>, std::string> read_faults(const sim::Options& o) {
+std::variant<std::optional<sim::FaultInjector>, std::string> read_faults(const sim::Options& o,
+                                                                         const device::Device& record) {
   if (o.faults.empty()) return std::optional<sim::FaultInjector>();
+  if (record.odrive || record.moteus)
+    return "--faults: found a record of " + std::string(record.odrive ? "ODrives" : "moteus drives") +
+           ", allowed CiA 402 drives, whose frames fault scripts change";
   const auto read = scene::load_fault_script(o.faults);
   if (const auto* e = std::get_if<scene::Error>(&read)) return e->text;
   const auto& script = std::get<scene::FaultScript>(read);
@@ -102,25 +109,28 @@ int main(int argc, char** argv) {
 
   if (const auto why = options.stats.empty() ? std::string() : sim::objection_to(options.stats); !why.empty())
     return refuse("--stats " + options.stats + ": " + why);
-  const auto body = read_body(options);
-  if (const auto* why = std::get_if<std::string>(&body)) return refuse(*why);
+  const auto read = read_record(options);
+  if (const auto* why = std::get_if<std::string>(&read)) return refuse(*why);
+  const auto& record = std::get<device::Device>(read);
+  const sim::Body body = body_of(options, record);
   const sigset_t during_sleep = take_signals();
   auto found =
       // Started here, so that its threads have the signals blocked and normal priority
-      sim::mover_of(options, std::get<sim::Body>(body).plant.linkage);
+      sim::mover_of(options, body.plant.linkage);
   if (const auto* why = std::get_if<std::string>(&found)) return refuse(*why);
   auto& mover = std::get<sim::Mover>(found);
-  auto faults = read_faults(options);
+  auto faults = read_faults(options, record);
   if (const auto* why = std::get_if<std::string>(&faults)) return refuse(*why);
   auto& injector = std::get<std::optional<sim::FaultInjector>>(faults);
-  auto opened = sim::open_port(options.bus);
+  auto opened = sim::open_port(options.bus, sim::network_of(record));
   if (const auto* why = std::get_if<std::string>(&opened)) return refuse(*why);
   sim::Port& port = *std::get<std::unique_ptr<sim::Port>>(opened);
 
   sim::Narrator narrator(options.hand());
   for (const std::string& line : sim::ask_for_scheduling(options.real_time, options.cpu)) narrator.say(line);
-  sim::HandDevice device(std::move(mover.will), sim::now_monotonic(), std::get<sim::Body>(body),
-                         !port.charges_bit_time());
+  const sim::Time now = sim::now_monotonic();
+  sim::HandDevice device(std::move(mover.will), now, body, !port.charges_bit_time(),
+                         sim::drives_of(record, body.drives, now));
   sim::EventLoop loop(device, port, injector ? &*injector : nullptr);
   if (const auto doubt = can::doubt_about_hand(options.hand(), options.bus); !doubt.empty()) narrator.say(doubt);
   narrator.say("on " + options.bus + ", waiting for a controller");

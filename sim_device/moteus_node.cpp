@@ -68,12 +68,17 @@ void MoteusNode::advance(Time now) {
   }
   if (watchdog_.is_over(now)) {
     watchdog_.disarm();
+    ++watchdog_trips;
     if (mode_ == kPosition) mode_ = kTimeout;
   }
   while (!late_.empty() && late_.front().first <= now) {
     out.push_back(late_.front().second);
     late_.pop_front();
   }
+}
+
+Time MoteusNode::next_deadline() const noexcept {
+  return std::min({powered_.at(), ready_.at(), watchdog_.at(), late_.empty() ? kNever : late_.front().first});
 }
 
 float* MoteusNode::setting(std::uint32_t reg) noexcept {

@@ -33,6 +33,7 @@ class MoteusNode {
   /// A frame on the bus. Answers go to `out`.
   void take(const can::Frame& frame, Time now);
   void advance(Time now);  ///< watchdog, modes and late answers
+  [[nodiscard]] Time next_deadline() const noexcept;
   /// Power off; the drive is back after `boot`.
   void power_cycle(Time now, Time boot);
   void fail(int fault);
@@ -41,10 +42,12 @@ class MoteusNode {
   [[nodiscard]] float torque_Nm() const noexcept;
   [[nodiscard]] int mode() const noexcept { return mode_; }
   [[nodiscard]] bool is_on() const noexcept { return mode_ > 1; }
+  [[nodiscard]] bool has_fault() const noexcept { return mode_ == 1; }
   void set_mode(int mode) noexcept { mode_ = mode; }
 
   bool obeys = true;    ///< false: it only answers
   bool answers = true;  ///< false: it only obeys
+  std::int64_t watchdog_trips = 0;
   std::deque<can::Frame> out;
   float position_rev = 0.0F, velocity_rev_per_s = 0.0F;
   float adds_Nm = 0.0F;  ///< to the commanded torque

@@ -17,12 +17,11 @@ void Narrator::say(const std::string& what) const {
 
 void Narrator::look(const HandDevice& device, int clients, Time now) {
   if (clients != std::exchange(clients_, clients)) say(std::to_string(clients) + " on the bus beside the drives");
-  const auto& drives = device.drives();
-  const bool faulted = std::any_of(drives.begin(), drives.end(),
-                                   [](const DriveNode& d) { return d.state() == can::cia402::State::kFault; });
-  if (faulted && !faulted_) say("controller silent, drives took their torque away");
-  faulted_ = faulted;
+  const bool faulted = std::ranges::any_of(device.drives(), [](const auto& drive) { return drive->has_fault(); });
   const Mechanics& m = device.mechanics();
+  if (faulted && !faulted_ && m.has_started())  // start-up may try the watchdogs
+    say("controller silent, drives took their torque away (moteus drives damp)");
+  faulted_ = faulted;
   const bool has_end = m.script_end_s() < kEndless_s;
   if (m.has_started() && !std::exchange(started_, true))
     say(has_end ? "drives enabled, script begins" : "drives enabled, the operator begins");

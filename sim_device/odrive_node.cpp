@@ -1,5 +1,6 @@
 #include "sim_device/odrive_node.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <utility>
 
@@ -58,7 +59,10 @@ float OdriveNode::torque_Nm() const noexcept {
 
 void OdriveNode::advance(Time now) {
   if (powered_.is_over(now)) boot(now);
-  if (watchdog_.is_over(now)) disarm(0x0100'0000);
+  if (watchdog_.is_over(now)) {
+    ++watchdog_trips;
+    disarm(0x0100'0000);
+  }
   if (position_.is_over(now)) {
     position_.arm(position_.at() + settings_.tells_position);
     answer(0x09);
@@ -66,6 +70,10 @@ void OdriveNode::advance(Time now) {
   if (!beat_.is_over(now)) return;
   beat_.arm(beat_.at() + settings_.heartbeat);
   send(0x01, error_, state_);
+}
+
+Time OdriveNode::next_deadline() const noexcept {
+  return std::min({powered_.at(), watchdog_.at(), position_.at(), beat_.at()});
 }
 
 void OdriveNode::take(const can::Frame& frame, Time now) {

@@ -37,6 +37,7 @@ class OdriveNode {
   /// A frame on the bus. Answers go to `out`.
   void take(const can::Frame& frame, Time now);
   void advance(Time now);  ///< watchdog and heartbeat
+  [[nodiscard]] Time next_deadline() const noexcept;
   /// Power off; the drive is back after `boot`.
   void power_cycle(Time now, Time boot);
 
@@ -46,7 +47,10 @@ class OdriveNode {
   [[nodiscard]] float current_limit_A() const noexcept { return current_limit_A_; }
   void fail() noexcept { disarm(0x20); }  ///< of the power stage
 
+  [[nodiscard]] bool has_error() const noexcept { return error_ != 0; }
+
   bool obeys = true;  ///< false: it only answers
+  std::int64_t watchdog_trips = 0;
   std::deque<can::Frame> out;
   float position_rev = 0.0F;
 

@@ -79,7 +79,10 @@ std::variant<Options, int> parse_options(int argc, char** argv) {
   app.add_option("--stats", o.stats, "At the end, write JSON: SYNCs, bus load, watchdog trips, final torque");
   app.add_flag("--rt", o.real_time, "Ask for SCHED_FIFO and locked memory; runs on with a warning when refused");
   app.add_option("--cpu", o.cpu, "Stay on this CPU")->check(within(0, 1023));
-  app.add_option("--device", o.device, "Device record (TOML, see scenes/devices); without it the Omni class");
+  app.add_option(
+      "--device", o.device,
+      "Device record (TOML, see scenes/devices), also names the drives: CiA 402, ODrive, moteus; without it the "
+      "Omni class");
   const auto known_hold = [](const std::string& word) {
     return hand_of(word) ? std::string() : "found '" + word + "', allowed loose, light, firm, clenched, none or 0 .. 1";
   };

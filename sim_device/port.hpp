@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "protocol/can/frame.hpp"
+#include "protocol/can/local_wire.hpp"
 
 namespace ligature::sim {
 
@@ -39,7 +39,8 @@ class Port {
 };
 
 /// Opens `local:/path/socket` (and listens there) or `socketcan:interface`. @return the port, or one line that says why
-/// not.
-[[nodiscard]] std::variant<std::unique_ptr<Port>, std::string> open_port(const std::string& url);
+/// not. @param network  the frames that the drives understand
+[[nodiscard]] std::variant<std::unique_ptr<Port>, std::string> open_port(const std::string& url,
+                                                                         can::Network network = can::Network::kClassic);
 
 }  // namespace ligature::sim

@@ -27,10 +27,11 @@ double microseconds(Time t) { return std::chrono::duration<double, std::micro>(t
 std::string stats_json(const std::string& hand, const HandDevice& device, const LoopStats& loop, long dropped_frames) {
   nlohmann::ordered_json j;
   std::int64_t trips = 0, syncs_without_rpdo = 0, replaced = 0;
-  for (const DriveNode& d : device.drives()) {
-    trips += d.stats().watchdog_trips;
-    syncs_without_rpdo += d.stats().syncs_without_rpdo;
-    replaced += d.stats().late_rpdos;
+  for (const auto& drive : device.drives()) {
+    const DriveStats stats = drive->stats();
+    trips += stats.watchdog_trips;
+    syncs_without_rpdo += stats.syncs_without_rpdo;
+    replaced += stats.late_rpdos;
   }
   j["hand"] = hand;
   j["syncs"] = device.bus_stats().syncs;

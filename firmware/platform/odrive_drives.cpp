@@ -229,6 +229,7 @@ std::optional<std::string> OdriveDrives::try_watchdog(BusWait& wait) {
   pause(wait);
   const auto is_on = [](const Node& node) { return node.is_on() && node.heartbeat.error == 0; };
   if (auto e = expect(wait, kPatience, as_in_operation, is_on, "does not switch on")) return e;
+  pause(wait);  // a heartbeat ended the wait: the frames of this period may still be in the queue
   for (const float torque : {trial_torque_Nm_, -trial_torque_Nm_, 0.0F}) {
     if (auto e = try_torque(wait, torque)) return e;
   }

@@ -205,7 +205,7 @@ TEST(SocketCan, AnInterfaceThatIsDownCannotBeOpenedForGoodOrIsLostAtOnce) {
 }
 
 TEST(SimulatedHandOnSocketCan, HearsAndSpeaks) {
-  auto made = sim::CanPort::open("vcan0");
+  auto made = sim::CanPort::open("vcan0", can::Network::kClassic);
   ASSERT_TRUE(std::holds_alternative<std::unique_ptr<sim::Port>>(made));
   sim::Port& port = *std::get<0>(made);
   EXPECT_FALSE(port.charges_bit_time()) << "a virtual bus takes no time of its own";
@@ -221,6 +221,25 @@ TEST(SimulatedHandOnSocketCan, HearsAndSpeaks) {
   EXPECT_EQ(frames[0].frame.id, 0x080U);
   port.send(kFrame, -1);
   EXPECT_TRUE(stranger.hears(0x181));
+}
+
+TEST(SimulatedHandOnSocketCan, HearsAndSpeaksFdFramesIfItsDrivesDo) {
+  auto made = sim::CanPort::open("vcan0", can::Network::kFd);
+  ASSERT_TRUE(std::holds_alternative<std::unique_ptr<sim::Port>>(made));
+  sim::Port& port = *std::get<0>(made);
+  const Stranger stranger;
+  stranger.send_fd(0x8001 | CAN_EFF_FLAG, 12);
+  std::vector<pollfd> fds;
+  port.add_descriptors(fds);
+  ASSERT_EQ(poll(fds.data(), fds.size(), 1000), 1);
+  std::vector<sim::Received> frames;
+  std::vector<int> left;
+  port.receive(frames, left);
+  ASSERT_EQ(frames.size(), 1U);
+  EXPECT_EQ(frames[0].frame.id, can::kExtendedBit | 0x8001U);
+  EXPECT_EQ(frames[0].frame.dlc, 12);
+  port.send({0x100, 24, {}, can::Format::kFdFast}, -1);
+  EXPECT_TRUE(stranger.hears(0x100, CANFD_MTU));
 }
 
 }  // namespace

@@ -88,6 +88,33 @@ class ShortSuture(SutureInTime, Scenario):
     time = AS_FAST_AS_A_RIG
 
 
+class ShelfDrives(Scenario):
+    name = "shelf_drives"
+
+    def runs(self, suffix=""):
+        return [(drives, self.folder / (drives + suffix)) for drives in ("odrive", "moteus")]
+
+    def test_no_sample_is_late_and_no_deadline_missed(self):
+        for drives, folder in self.runs():
+            rows = ticks_of(folder)
+            self.every_tick_is_there(rows)
+            force = [r for r in rows if r["state"] == FORCE]
+            print(f"  {drives}: {len(rows)} periods, {len(force)} in FORCE", flush=True)
+            self.assertGreater(len(force), 500)
+            self.assertTrue(any(map(pushes, force)))
+            self.assertEqual({r["fault"] for r in rows}, {0})
+            self.assertEqual(sum(r["flags"] & (LOST | MISSED) != 0 for r in rows), 0)
+            self.assertEqual(sum(r["left_tpdo_age_ticks"] + r["right_tpdo_age_ticks"] for r in force), 0)
+
+    def test_every_drive_ends_its_command_when_the_firmware_is_killed(self):
+        for drives, folder in self.runs("-killed"):
+            for hand in ("left", "right"):
+                stats = json.loads((folder / f"{hand}.json").read_text())
+                self.assertEqual(stats["watchdog_trips"], 6, "each drive at start-up, which tries it, and at the end")
+                most = 0 if drives == "odrive" else 340  # moteus drives damp the motion, with 0.1 N m at most
+                self.assertLessEqual(max(map(abs, stats["final_torque_permille"])), most)
+
+
 class Canopen(Guest):
     def test_python_canopen_is_the_master_of_a_hand(self):
         _, code = guest("canopen_master")
@@ -140,7 +167,7 @@ class Machine(Guest):
         folder, code = guest("machine", "--cpus", "2", "--isolate")
         self.assertEqual(code, 0)
         ran = (folder / "socketcan.log").read_text()
-        self.assertIn("[  PASSED  ] 9 tests", ran)
+        self.assertIn("[  PASSED  ] 10 tests", ran)
         rows = (folder / "doctor.log").read_text()
         for row in ("OK    kernel .*PREEMPT_RT", "OK    own core .*core 1", "OK    timer ticks .*core 1", "OK    RCU callbacks",
                     "OK    real-time priority", "OK    locked memory", "OK    LCM", "OK    CAN +vcan0: up", "OK    CAN bit rate .*virtual",

@@ -12,6 +12,7 @@
 #include "firmware/platform/can_bus.hpp"
 #include "sim_device/fault_injector.hpp"
 #include "sim_device/hand_device.hpp"
+#include "sim_device/shelf_drives.hpp"
 
 namespace ligature::lab {
 
@@ -23,8 +24,10 @@ class DeviceBus final : public platform::CanBus {
   /// Length of the firmware interface's transmit queue, in frames, as on a rig (docs/deployment.md).
   static constexpr std::size_t kQueue = 8;
 
-  DeviceBus(std::unique_ptr<sim::Intention> intention, const sim::Body& body, const Nanoseconds& now)
-      : device(std::move(intention), now, body), now_(now) {}
+  /// @param record  names the drives
+  DeviceBus(std::unique_ptr<sim::Intention> intention, const sim::Body& body, const device::Device& record,
+            const Nanoseconds& now)
+      : device(std::move(intention), now, body, true, sim::drives_of(record, body.drives, now)), now_(now) {}
 
   /// From now on loses this fraction (`share`) of the process data frames (PDOs) in both directions, 0 .. 1; equal
   /// seeds lose equal frames. SYNC, NMT, SDO and heartbeats are never lost.

@@ -24,8 +24,7 @@ void TruthWatch::look(const sim::HandDevice& device) {
   for (std::size_t j = 0; j < tip.permille.size(); ++j)
     tip.permille[j] = static_cast<std::int16_t>(
         std::lround(torque_Nm[static_cast<Eigen::Index>(j)] / arm.body().drives.torque_Nm(1)));
-  tip.drives_on = std::ranges::all_of(device.drives(),
-                                      [](const auto& drive) { return can::cia402::may_produce_torque(drive.state()); });
+  tip.drives_on = std::ranges::all_of(device.drives(), [](const auto& drive) { return drive->is_enabled(); });
   tips_.push_back(tip);
   torque_Nm_ = torque_Nm;
   q_rad_ = q_rad;

@@ -74,9 +74,9 @@ VirtualRig::VirtualRig(RigSetup s, Intentions intentions)
     : setup(std::move(s)),
       thread(thread_of(setup.scene)),
       left((held_[0] = dynamic_cast<sim::HeldIntention*>(intentions[0].get()), std::move(intentions[0])), setup.body[0],
-           time),
+           setup.device, time),
       right((held_[1] = dynamic_cast<sim::HeldIntention*>(intentions[1].get()), std::move(intentions[1])),
-            setup.body[1], time),
+            setup.body[1], setup.device, time),
       controller(setup.scene.hands, settings_of(setup)) {
   left.lose_frames(setup.frame_loss, 2 * setup.seed);
   right.lose_frames(setup.frame_loss, 2 * setup.seed + 1);

@@ -5,6 +5,7 @@ set -eu
 export XDG_STATE_HOME=/run/state
 flight=/run/flight.rec
 scene=scenes/paper.toml script=scenes/operators/overhand.csv  # of both hands and the controller
+record=                                                       # device record of both hands; empty: the Omni class
 recorder_s=30                                                 # time that the flight recorder keeps
 hands_priority=85
 
@@ -22,7 +23,7 @@ hand() {
   local side=$1 interface=$2
   shift 2
   chrt -f "$hands_priority" "$LIGATURE_BIN/ligature-device" --hand "$side" --bus "socketcan:$interface" --scene "$scene" \
-    --operator "$script" --stats "/run/$side.json" "$@" > "/run/$side.log" 2>&1 &
+    --operator "$script" --stats "/run/$side.json" ${record:+--device "$record"} "$@" > "/run/$side.log" 2>&1 &
   printf -v "${side}_pid" %d $!
 }
 
@@ -31,9 +32,9 @@ hand() {
 firmware() {
   local left=$1 right=$2
   shift 2
-  rm -f "$flight"*
+  rm -f "$flight"* /run/firmware.log  # in_force reads this run's log only
   "$LIGATURE_BIN/ligature-firmware" run --scene "$scene" --left "socketcan:$left" --right "socketcan:$right" \
-    --arm --force --rt=enforce --recorder "$flight" --recorder-s "$recorder_s" "$@" > /run/firmware.log 2>&1 &
+    ${record:+--device "$record"} --arm --force --rt=enforce --recorder "$flight" --recorder-s "$recorder_s" "$@" > /run/firmware.log 2>&1 &
   firmware_pid=$!
 }
 

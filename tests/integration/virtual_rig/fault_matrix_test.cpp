@@ -378,7 +378,7 @@ TEST(FaultMatrix, DrivesOfASleepingControllerFallFreeByThemselves) {
   rig.stall_for = std::chrono::milliseconds(50);
   ASSERT_EQ(rig.run(kTicks), std::nullopt);
   for (const DeviceBus* bus : {&rig.left, &rig.right}) {
-    for (const auto& drive : bus->device.drives()) EXPECT_EQ(drive.stats().watchdog_trips, 1);
+    for (const auto& drive : bus->device.drives()) EXPECT_EQ(drive->stats().watchdog_trips, 1);
   }
 }
 

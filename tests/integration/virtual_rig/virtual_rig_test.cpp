@@ -60,7 +60,8 @@ TEST(VirtualRig, ACleanEndIsNoFaultToTheDrives) {
   rig.time += std::chrono::seconds(2);
   for (DeviceBus* bus : {&rig.left, &rig.right}) {
     bus->device.advance(rig.time);
-    for (const auto& drive : bus->device.drives()) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const sim::DriveNode& drive = bus->device.cia402(i);
       EXPECT_EQ(drive.nmt_state(), can::NmtState::kPreOperational);
       EXPECT_EQ(drive.state(), can::cia402::State::kSwitchOnDisabled);
       EXPECT_EQ(drive.stats().watchdog_trips, 0);
@@ -92,7 +93,7 @@ TEST(VirtualRig, ARunThatEndsInForceLeavesEveryDriveOff) {
   ASSERT_EQ(rig.run(1500), std::nullopt);
   for (const DeviceBus* bus : {&rig.left, &rig.right}) {
     EXPECT_EQ(bus->device.torque_permille(), (std::array<std::int16_t, 3>{}));
-    for (const auto& drive : bus->device.drives()) EXPECT_FALSE(can::cia402::may_produce_torque(drive.state()));
+    for (const auto& drive : bus->device.drives()) EXPECT_FALSE(drive->is_enabled());
   }
 }
 

@@ -40,7 +40,7 @@ struct Bench {
   }
   void pass(Time span) {
     now += span;
-    drive.poll(now, out);
+    drive.poll(now, {}, out);
   }
   [[nodiscard]] std::vector<std::uint16_t> emergencies() const {
     std::vector<std::uint16_t> codes;

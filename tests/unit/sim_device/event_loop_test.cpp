@@ -73,7 +73,7 @@ TEST_F(EventLoopTest, WhatALostClientHadInItsQueueIsGone) {
   port.leaving = {0};
   loop.serve(milliseconds(11) + microseconds(1));
   loop.serve(milliseconds(30));
-  EXPECT_EQ(device.drives()[0].nmt_state(), can::NmtState::kPreOperational);
+  EXPECT_EQ(device.cia402(0).nmt_state(), can::NmtState::kPreOperational);
 }
 
 }  // namespace

@@ -140,7 +140,7 @@ TEST(HandDevice, FramesReadLateActInTheOrderAndTimeTheyWereSent) {  // the devic
   EXPECT_EQ(r.device.bus_stats().syncs, syncs + 5);
   // The torque of tick 4, which acts at SYNC 5.
   EXPECT_EQ(r.device.torque_permille(), (std::array<std::int16_t, 3>{400, 400, 400}));
-  EXPECT_EQ(r.device.drives()[0].stats().late_rpdos, 0);
+  EXPECT_EQ(r.device.drives()[0]->stats().late_rpdos, 0);
 }
 
 TEST(HandDevice, PowerOffTakesTorqueAway) {
