@@ -116,6 +116,21 @@ TEST_P(ShelfDrives, AHandThatDiesFreesTheOther) {
   for (const auto& drive : rig.right.device.drives()) EXPECT_EQ(drive->torque_Nm(), 0.0);
 }
 
+TEST_P(ShelfDrives, PowerOffTakesTheTorqueAwayAndTheAnswers) {
+  ShelfRig rig(GetParam());
+  bool had_torque = false;
+  rig.each_tick = [&] {
+    if (rig.cycle.periods() != 2500) return;
+    had_torque = rig.has_torque();
+    for (DeviceBus* b : rig.buses()) b->device.power_off();
+    EXPECT_FALSE(rig.has_torque());
+  };
+  ASSERT_EQ(rig.run(2600), std::nullopt);
+  EXPECT_TRUE(had_torque);
+  EXPECT_FALSE(rig.has_torque());
+  EXPECT_NE(rig.controller.fault(), control::Fault::kNone);
+}
+
 INSTANTIATE_TEST_SUITE_P(Records, ShelfDrives, testing::Values("odrive.toml", "moteus.toml"),
                          [](const auto& record) { return std::string(record.param).substr(0, 6); });
 

@@ -160,12 +160,21 @@ TEST(OdriveInOperation, ARefusedFrameIsALostBus) {
   }
 }
 
+/// The longest watchdog of drive 3 that start-up does not tell from 20 ms. It depends on when the heartbeats come.
+milliseconds longest_watchdog(bool old) {
+  milliseconds longest(40);
+  while (longest > milliseconds(20) &&
+         OdriveHand({.watchdog = longest, .has_old_watchdog = old}, {.has_old_watchdog = old}).start() != "accepted")
+    --longest;
+  EXPECT_LE(longest, milliseconds(31));
+  return longest;
+}
+
 /// The controller has a fault and switches off (kHold), but one drive obeys no command any more. The firmware must send
 /// nothing for so long that this drive's watchdog runs out, whichever frames feed it.
 TEST(OdriveInOperation, ADriveThatObeysNothingStarves) {
   for (const bool old : {false, true}) {
-    // The longest watchdog that start-up does not tell from 20 ms
-    OdriveHand rig({.watchdog = milliseconds(29), .has_old_watchdog = old}, {.has_old_watchdog = old});
+    OdriveHand rig({.watchdog = longest_watchdog(old), .has_old_watchdog = old}, {.has_old_watchdog = old});
     ASSERT_EQ(rig.start(), "accepted");
     ASSERT_TRUE(rig.enable());
     for (int i = 0; i < 10; ++i) (void)rig.period(rt::DriveRequest::kOperate, 0.1);
@@ -187,7 +196,7 @@ TEST(OdriveInOperation, ADriveThatObeysNothingStarves) {
 /// The same after a frame of another controller. The firmware answers with emergency stops in ten periods, and these
 /// feed an old watchdog. After them it must be silent, too, so that the watchdog runs out.
 TEST(OdriveInOperation, ADriveThatObeysNothingStarvesAlsoAfterAStop) {
-  OdriveHand rig({.watchdog = milliseconds(29), .has_old_watchdog = true}, {.has_old_watchdog = true});
+  OdriveHand rig({.watchdog = longest_watchdog(true), .has_old_watchdog = true}, {.has_old_watchdog = true});
   ASSERT_EQ(rig.start(), "accepted");
   ASSERT_TRUE(rig.enable());
   (void)rig.period(rt::DriveRequest::kOperate, 0.1);
