@@ -90,6 +90,7 @@ class ShortSuture(SutureInTime, Scenario):
 
 class ShelfDrives(Scenario):
     name = "shelf_drives"
+    time = AS_FAST_AS_A_RIG  # six requests a period, each with a wake-up of a hand, take a quarter of a period with one
 
     def runs(self, suffix=""):
         return [(drives, self.folder / (drives + suffix)) for drives in ("odrive", "moteus")]

@@ -3,6 +3,7 @@
 # second run in which the firmware is killed while it renders force.
 . tests/hil/inside/rig.sh
 warm chrt grep ip
+hands_priority=75
 for i in 0 1; do ip link set vcan$i down; ip link set vcan$i mtu 72; ip link set vcan$i up; done
 for drives in odrive moteus; do
   echo "shelf drives: $drives"
