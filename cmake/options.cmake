@@ -35,8 +35,8 @@ function(ligature_check_cpu target)
 endfunction()
 
 # Compiles eight sources as one unit, for targets whose headers (toml++, JSON, Boost, CLI11) take longer to compile than
-# their own code: host/view takes half the time, sim_device a third. Names in anonymous namespaces must then differ within
-# a target. Not for the physics and the control law: an object there should not depend on which files are its neighbours.
+# their own code: host/view and test_platform take half the time. Names in anonymous namespaces must then differ within a
+# target. Not for the physics and the control law: an object there should not depend on which files are its neighbours.
 function(ligature_compile_together)
   set_target_properties(${ARGV} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
 endfunction()

@@ -82,8 +82,8 @@ void LocalPort::accept_clients() {
 
 bool LocalPort::read_all(std::size_t slot, std::vector<Received>& frames) {
   for (;;) {
-    std::array<std::uint8_t, can::kLocalFdPacketBytes + 1>
-        packet;  // one byte more, to detect packets that are too long
+    // One byte more, to detect packets that are too long
+    std::array<std::uint8_t, can::kLocalFdPacketBytes + 1> packet;
     const ssize_t n = recv(clients_[slot].get(), packet.data(), packet.size(), 0);
     if (n < 0) return errno == EAGAIN || errno == EINTR;
     if (n == 0) return false;

@@ -112,8 +112,8 @@ class Moteus final : public BusNode {
     node_.advance(now);
     hand_over(node_.out, out);
   }
-  /// After its watchdog a moteus damps the motion, so its torque changes with the speed. A torque that this process,
-  /// when it stalls, leaves as it is acts against the motion for 0.1 s at least: the damping is that weak.
+  /// After its watchdog a moteus damps the motion, so its torque follows the speed. 1 ms is often enough: the damping
+  /// stops a joint in about 0.1 s.
   Time next_deadline() const noexcept override {
     const Time at = off_ ? kNever : node_.next_deadline();
     return !off_ && node_.mode() == kTimeoutMode ? std::min(at, looked_ + milliseconds(1)) : at;

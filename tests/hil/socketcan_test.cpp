@@ -204,6 +204,17 @@ TEST(SocketCan, AnInterfaceThatIsDownCannotBeOpenedForGoodOrIsLostAtOnce) {
   set_up(true);
 }
 
+/// What a simulated hand hears next; waits for it for 1 s.
+std::vector<sim::Received> next_frames(sim::Port& port) {
+  std::vector<pollfd> fds;
+  port.add_descriptors(fds);
+  poll(fds.data(), fds.size(), 1000);
+  std::vector<sim::Received> frames;
+  std::vector<int> left;
+  port.receive(frames, left);
+  return frames;
+}
+
 TEST(SimulatedHandOnSocketCan, HearsAndSpeaks) {
   auto made = sim::CanPort::open("vcan0", can::Network::kClassic);
   ASSERT_TRUE(std::holds_alternative<std::unique_ptr<sim::Port>>(made));
@@ -211,12 +222,7 @@ TEST(SimulatedHandOnSocketCan, HearsAndSpeaks) {
   EXPECT_FALSE(port.charges_bit_time()) << "a virtual bus takes no time of its own";
   const Stranger stranger;
   stranger.send(0x080, 0);
-  std::vector<pollfd> fds;
-  port.add_descriptors(fds);
-  ASSERT_EQ(poll(fds.data(), fds.size(), 1000), 1);
-  std::vector<sim::Received> frames;
-  std::vector<int> left;
-  port.receive(frames, left);
+  const auto frames = next_frames(port);
   ASSERT_EQ(frames.size(), 1U);
   EXPECT_EQ(frames[0].frame.id, 0x080U);
   port.send(kFrame, -1);
@@ -229,12 +235,7 @@ TEST(SimulatedHandOnSocketCan, HearsAndSpeaksFdFramesIfItsDrivesDo) {
   sim::Port& port = *std::get<0>(made);
   const Stranger stranger;
   stranger.send_fd(0x8001 | CAN_EFF_FLAG, 12);
-  std::vector<pollfd> fds;
-  port.add_descriptors(fds);
-  ASSERT_EQ(poll(fds.data(), fds.size(), 1000), 1);
-  std::vector<sim::Received> frames;
-  std::vector<int> left;
-  port.receive(frames, left);
+  const auto frames = next_frames(port);
   ASSERT_EQ(frames.size(), 1U);
   EXPECT_EQ(frames[0].frame.id, can::kExtendedBit | 0x8001U);
   EXPECT_EQ(frames[0].frame.dlc, 12);

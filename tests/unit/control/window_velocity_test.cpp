@@ -1,7 +1,6 @@
 // WindowVelocity estimates a velocity from encoder counts: its noise and lag, compared with a first-order low-pass.
 // Prints the tables of docs/measurements/haptics.md.
 #include "firmware/control/window_velocity.hpp"
-#include "tests/unit/control/plain_device.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +8,8 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+
+#include "tests/unit/control/plain_device.hpp"
 
 namespace ligature::control {
 namespace {
