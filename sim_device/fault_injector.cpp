@@ -8,6 +8,7 @@
 #include "protocol/can/heartbeat.hpp"
 #include "protocol/can/nmt.hpp"
 #include "protocol/can/sdo.hpp"
+#include "protocol/scene/random.hpp"
 
 namespace ligature::sim {
 namespace {
@@ -90,7 +91,7 @@ bool FaultInjector::is_hit(const Delivery& d) {
   if (d.due < onset_ || d.due >= end_) return false;
   const auto address = can::address_of(d.frame.id);
   if (!address || (script_.node != 0 && address->node.value != script_.node)) return false;
-  return std::uniform_real_distribution<double>(0.0, 1.0)(random_) < script_.share;
+  return scene::share(random_) < script_.share;
 }
 
 void FaultInjector::change(const Delivery& delivery, std::vector<Delivery>& out) {

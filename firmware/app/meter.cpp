@@ -15,6 +15,7 @@
 #include "firmware/app/worst_case.hpp"
 #include "firmware/control/controller.hpp"
 #include "firmware/control/tick_report.hpp"
+#include "protocol/scene/random.hpp"
 
 namespace ligature::app {
 namespace {
@@ -157,9 +158,9 @@ class ThreadMeter {
   }
 
   physics::Vec3 random_vector() {
-    std::uniform_real_distribution<double> d(-1.0, 1.0);
-    const double x = d(random_), y = d(random_), z = d(random_);
-    return {x, y, z};
+    physics::Vec3 v;
+    for (auto& x : v) x = scene::between(random_, -1.0, 1.0);
+    return v;
   }
 
   const scene::Scene& scene_;

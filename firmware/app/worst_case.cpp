@@ -5,6 +5,8 @@
 #include <random>
 #include <utility>
 
+#include "protocol/scene/random.hpp"
+
 namespace ligature::app {
 namespace {
 
@@ -28,8 +30,7 @@ std::vector<Vec3> corners(double length_m, double spacing_m) {
 }
 
 Vec3 normal_vector(std::mt19937& random) {
-  std::normal_distribution<double> normal(0.0, 1.0);
-  const double x = normal(random), y = normal(random), z = normal(random);
+  const auto [x, y, z] = scene::normals(random);
   return {x, y, z};
 }
 

@@ -66,7 +66,8 @@ OS_HEADERS = re.compile(
     r"^(sys|linux|net|netinet|arpa)/|^(unistd|fcntl|poll|pthread|sched|signal|time|errno|dirent|termios|glob|malloc)\.h$"
     r"|^(fstream|iostream|filesystem|thread|mutex|condition_variable|future|csignal|ctime|cstdio|syncstream|semaphore)$"
 )
-STRANGE_RANDOM = re.compile(r"std::mt19937\w*|std::\w+_distribution|std::random_device|std::(?:ranges::)?shuffle\(")
+# Random numbers that differ between standard libraries.
+STRANGE_RANDOM = re.compile(r"std::\w+_distribution|std::(?:ranges::)?shuffle\(")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.M)
 
 
@@ -104,16 +105,22 @@ def violations(path, text):
 
 
 def random_violations(path, text):
-    """Random input of tests must come from tests/support/random.hpp: reproducible everywhere, and other seeds can be
-    chosen with the variable LIGATURE_TEST_SEED."""
-    found = sorted(set(STRANGE_RANDOM.findall(text)))
-    return [f"{path}: uses {word}; random input comes from tests/support/random.hpp" for word in found]
+    """Random numbers must be the same with every standard library. Tests draw them from tests/support/random.hpp only,
+    so that other seeds can be chosen with the variable LIGATURE_TEST_SEED."""
+    found = set(STRANGE_RANDOM.findall(text))
+    source = "protocol/scene/random.hpp"
+    if path.startswith("tests/"):
+        source = "tests/support/random.hpp"
+        found |= set(re.findall(r"std::mt19937\w*|std::random_device", text))
+    return [f"{path}: uses {word}; random numbers come from {source}" for word in sorted(found)]
 
 
 def self_check():
     """Checks that the rules reject bad examples."""
     assert random_violations("tests/a.cpp", "std::mt19937 random(1);")
     assert not random_violations("tests/a.cpp", "test::Random random(1);")
+    assert random_violations("host/a.cpp", "std::normal_distribution<double> normal;")
+    assert not random_violations("host/a.cpp", "std::mt19937 random(1);")
     assert violations("firmware/physics/a.cpp", "#include <fstream>\n")
     assert violations("firmware/control/a.cpp", '#include "protocol/can/units.hpp"\n')
     assert violations("sim_device/a.cpp", '#include "firmware/rt/spsc_ring.hpp"\n')
@@ -129,7 +136,7 @@ def main():
     root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".").resolve()
     files = [p for top in OURS for p in (root / top).rglob("*") if p.suffix in (".hpp", ".cpp", ".h")]
     found = [v for p in sorted(files) for v in violations(p.relative_to(root).as_posix(), p.read_text())]
-    for p in sorted(p for p in (root / "tests").rglob("*") if p.suffix in (".hpp", ".cpp")):
+    for p in sorted([*files, *(p for p in (root / "tests").rglob("*") if p.suffix in (".hpp", ".cpp"))]):
         found += random_violations(p.relative_to(root).as_posix(), p.read_text())
     print("\n".join(found) if found else f"include rules hold in {len(files)} files")
     return 1 if found or not files else 0

@@ -4,18 +4,18 @@
 
 #include "host/lab/outcome.hpp"
 #include "host/lab/script_moves.hpp"
+#include "protocol/scene/random.hpp"
 
 namespace ligature::lab {
 namespace {
 
 scene::GripperScript trembling(scene::GripperScript script, std::mt19937& random) {
-  std::uniform_real_distribution<double> aside_m(-0.015, 0.015), pace(0.95, 1.05);
   for (auto& keys : script.keys) {
     for (auto& key : keys) {
-      for (auto& x : key.p_W_m) x += aside_m(random);
+      for (auto& x : key.p_W_m) x += scene::between(random, -0.015, 0.015);
     }
   }
-  return paced(std::move(script), pace(random));
+  return paced(std::move(script), scene::between(random, 0.95, 1.05));
 }
 
 }  // namespace
