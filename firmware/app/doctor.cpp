@@ -115,6 +115,7 @@ std::variant<double, Refusal> slack_of(const DoctorOptions& options, int core) {
   RunOptions like_run;
   like_run.scene = options.scene;
   like_run.device = options.device;
+  like_run.watchdog_ms = options.watchdog_ms;
   like_run.accept_no_drive_watchdog = true;  // nothing is moved here
   const auto planned = make_plan(like_run);
   if (const auto* refusal = std::get_if<Refusal>(&planned)) return *refusal;
@@ -294,7 +295,7 @@ int doctor(const DoctorOptions& options) {
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
   std::variant<std::vector<Check>, std::string> drives;
-  if (!options.device.empty()) drives = drive_checks(options.device);
+  if (!options.device.empty()) drives = drive_checks(options.device, options.watchdog_ms);
   if (const auto* why = std::get_if<std::string>(&drives)) {
     std::fprintf(stderr, "ligature-firmware: %s\n", why->c_str());
     return 2;

@@ -9,8 +9,9 @@
 namespace ligature::app {
 
 /// Rows of doctor's table about the drives of a device record: one row for each safety function that the drives lack,
-/// such as a watchdog. @return the rows, or one line of text if the record cannot be read.
-[[nodiscard]] std::variant<std::vector<platform::Check>, std::string> drive_checks(const std::string& device_file);
+/// such as a watchdog of `watchdog_ms`. @return the rows, or one line of text if the record cannot be read.
+[[nodiscard]] std::variant<std::vector<platform::Check>, std::string> drive_checks(const std::string& device_file,
+                                                                                   int watchdog_ms);
 
 /// Whether the drives of a record that can be read speak CAN FD.
 [[nodiscard]] bool need_fd(const std::string& device_file);

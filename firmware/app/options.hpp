@@ -12,6 +12,8 @@ namespace ligature::app {
 /// own drives (rt::BusTime::most_work()).
 inline constexpr double kDefaultBudget_percent = 20.0;
 
+inline constexpr int kDefaultWatchdog_ms = 20;
+
 enum class RtMode { kEnforce, kWarn, kOff };
 
 struct RunOptions {
@@ -29,7 +31,7 @@ struct RunOptions {
   bool no_telemetry = false;  ///< neither publish nor accept commands
   RtMode rt = RtMode::kWarn;
   int physics_core = -1;  ///< core of the physics thread; -1: the loop's core
-  int watchdog_ms = 20;
+  int watchdog_ms = kDefaultWatchdog_ms;
   std::string recorder;  ///< flight recorder file; "none" for none
   int recorder_s = 120;  ///< length of the recorded history
   std::string scenes;    ///< folder of scenes that commands may load; empty: the folder of `scene`
@@ -59,6 +61,7 @@ struct AdmitOptions {
 
 struct DoctorOptions {
   std::string device;  ///< device record whose drives are judged; empty: none
+  int watchdog_ms = kDefaultWatchdog_ms;  ///< the one that `run` will have
   double seconds = 10.0;
   double hours = 0.0;                ///< instead of `seconds`, when above 0
   std::vector<std::string> can;      ///< CAN interfaces to check

@@ -9,6 +9,7 @@ import tempfile
 import unittest
 
 BIN = pathlib.Path(os.environ["LIGATURE_BIN"])
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
 def run(program, *arguments):
@@ -52,6 +53,11 @@ class Doctor(unittest.TestCase):
         self.assertNotEqual(drawn.returncode, 0)
         self.assertIn("no wake-up was measured", drawn.stderr)
         self.assertFalse((self.folder / "latency.png").exists())
+
+    def test_drives_are_judged_with_the_watchdog_of_the_run(self):
+        asked = ("doctor", "--seconds", 0, "--device", ROOT / "scenes/devices/epos4.toml")
+        self.assertIn("for up to 40 ms", run("ligature-firmware", *asked).stdout, "as in the record")
+        self.assertIn("for up to 700 ms", run("ligature-firmware", *asked, "--watchdog-ms", 700).stdout)
 
 
 if __name__ == "__main__":
