@@ -107,7 +107,7 @@ void DriveNode::on_sync(const Sensed& sensed, std::vector<can::Frame>& out) {
   if (objects_.is_pdo_on(can::Pdo::kTpdo1)) {
     const auto buttons = can::profile::with_life(can::profile::with_held(sensed.buttons, held_syncs_), ++life_);
     const std::int16_t made = sensed.guarded ? sensed.torque_permille : torque_permille();
-    out.push_back(can::encode(id_, can::Tpdo1{statusword(sensed.guarded), sensed.position_counts, made, buttons}));
+    send_sample({statusword(sensed.guarded), sensed.position_counts, made, buttons}, sensed, out);
   }
   held_syncs_ = has_received_ ? 0 : held_syncs_ + (held_syncs_ < 31);
   if (has_received_) {
@@ -116,6 +116,10 @@ void DriveNode::on_sync(const Sensed& sensed, std::vector<can::Frame>& out) {
   } else if (state_ == State::kOperationEnabled) {
     ++stats_.syncs_without_rpdo;  // the last torque continues until the watchdog removes it
   }
+}
+
+void DriveNode::send_sample(const can::Tpdo1& sample, const Sensed&, std::vector<can::Frame>& out) {
+  out.push_back(can::encode(id_, sample));
 }
 
 void DriveNode::on_rpdo(const can::Rpdo1& rpdo, Time now) {

@@ -18,7 +18,7 @@ namespace ligature::sim {
 /// At a SYNC the drive first samples its inputs for the TPDO, then applies the RPDO that it holds; an RPDO that comes
 /// after the SYNC waits for the next one. If RPDOs (0x1400:05) or the master's heartbeat (0x1016:01) stay away too
 /// long, the drive removes its torque at once, sends an EMCY, and latches a fault that only a fault reset clears.
-class DriveNode final : public BusNode {
+class DriveNode : public BusNode {
  public:
   explicit DriveNode(can::NodeId id, const DriveConstants& constants = {})
       : id_(id), constants_(constants), objects_(id, constants) {}
@@ -41,6 +41,10 @@ class DriveNode final : public BusNode {
   [[nodiscard]] can::NmtState nmt_state() const noexcept { return nmt_; }
   /// Torque that the motor makes now, per mille of rated torque.
   [[nodiscard]] std::int16_t torque_permille() const noexcept;
+
+ protected:
+  /// Sends the answer to a SYNC.
+  virtual void send_sample(const can::Tpdo1& sample, const Sensed& sensed, std::vector<can::Frame>& out);
 
  private:
   void on_nmt(const can::NmtMessage& message, Time now, std::vector<can::Frame>& out);

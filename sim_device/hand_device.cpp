@@ -58,11 +58,9 @@ void HandDevice::feel_drives(Meaning meaning, Time end) noexcept {
 }
 
 Sensed HandDevice::sensed(std::size_t drive) const noexcept {
-  const bool has_stylus = drive == drives_.size() - 1;
   const auto joint = static_cast<Eigen::Index>(drive);
   const double per_permille = mechanics_.body().drives.torque_Nm(1);
-  return {mechanics_.counts(static_cast<int>(drive)), has_stylus ? mechanics_.buttons() : std::uint16_t{0},
-          mechanics_.motors().is_holding(joint),
+  return {mechanics_.counts(static_cast<int>(drive)), mechanics_.buttons(), mechanics_.motors().is_holding(joint),
           static_cast<std::int16_t>(std::lround(mechanics_.made_Nm()[joint] / per_permille)),
           mechanics_.plant().omega_rad_per_s()[joint]};
 }

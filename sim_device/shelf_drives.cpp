@@ -7,6 +7,7 @@
 #include "protocol/can/remote.hpp"
 #include "sim_device/moteus_node.hpp"
 #include "sim_device/odrive_node.hpp"
+#include "sim_device/profile_node.hpp"
 
 namespace ligature::sim {
 namespace {
@@ -155,7 +156,7 @@ BusNodes drives_of(const device::Device& device, const DriveConstants& constants
     else if (device.moteus)
       drives[i] = std::make_unique<Moteus>(i + 1, counts);
     else
-      drives[i] = std::make_unique<DriveNode>(can::profile::kJointNodes[i], constants);
+      drives[i] = std::make_unique<ProfileNode>(can::profile::kJointNodes[i], device, constants);
   }
   return drives;
 }

@@ -17,8 +17,16 @@ using lab::DeviceBus;
 
 struct ShelfRig : lab::VirtualRig {
   explicit ShelfRig(const std::string& record)
-      : VirtualRig(lab::RigSetup{.scene = paper(), .device = of(record), .body = bodies(record)}, overhand()) {}
+      : VirtualRig(lab::RigSetup{.scene = scene_of(record), .device = of(record), .body = bodies(record)}, overhand()) {}
 
+  /// The paper's scene. Only the Inverse3 does not reach all of it as it is shipped: docs/bridge.md has these two values.
+  static scene::Scene scene_of(const std::string& record) {
+    scene::Scene scene = paper();
+    if (record != "inverse3.toml") return scene;
+    scene.hands.workspace_scale = 30.0;
+    scene.hands.workspace_origin_m = {0.5, -0.4, 3.3};
+    return scene;
+  }
   static device::Device of(const std::string& record) {
     return std::get<device::Device>(device::load_device(kScenes + "devices/" + record));
   }
@@ -40,6 +48,11 @@ struct ShelfRig : lab::VirtualRig {
     each_tick = [this, period] {
       if (cycle.periods() >= period) left.cut = right.cut = true;
     };
+  }
+  std::string knot() {
+    std::vector<std::array<double, 3>> points;
+    for (const auto& p : thread.nodes_W()) points.push_back({p.x(), p.y(), p.z()});
+    return knot::recognise(points, false).type;
   }
   std::int64_t trips() {
     std::int64_t sum = 0;
@@ -63,9 +76,7 @@ TEST_P(ShelfDrives, TieTheOverhandWithEverySampleFresh) {
   }
   EXPECT_EQ(stale, 0);
   EXPECT_GT(pushed, 1000);
-  std::vector<std::array<double, 3>> points;
-  for (const auto& p : rig.thread.nodes_W()) points.push_back({p.x(), p.y(), p.z()});
-  EXPECT_EQ(knot::recognise(points, false).type, "3_1");
+  EXPECT_EQ(rig.knot(), "3_1");
   EXPECT_EQ(rig.trips(), 6) << "start-up tries each watchdog once";
   // Both hands begin in the same period, and not during a trial.
   const auto apart = rig.left.device.mechanics().started_at() - rig.right.device.mechanics().started_at();
@@ -130,6 +141,27 @@ TEST_P(ShelfDrives, PowerOffTakesTheTorqueAwayAndTheAnswers) {
   EXPECT_FALSE(rig.has_torque());
   EXPECT_NE(rig.controller.fault(), control::Fault::kNone);
 }
+
+class ShippedRecord : public testing::TestWithParam<const char*> {};
+
+TEST_P(ShippedRecord, TiesTheOverhandWithSimulatedCiA402Drives) {
+  ShelfRig rig(GetParam());
+  ASSERT_EQ(rig.run(23000), std::nullopt);
+  EXPECT_EQ(rig.controller.fault(), control::Fault::kNone);
+  EXPECT_EQ(rig.cycle.timing().deadline_misses, 0U);
+  const auto in_force = [](const auto& r) { return r.state == static_cast<int>(control::State::kForce); };
+  EXPECT_GT(std::ranges::count_if(rig.records, in_force), 15000);
+  EXPECT_EQ(rig.knot(), "3_1");
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, ShippedRecord,
+                         testing::Values("omni.toml", "cartesian.toml", "inverse3.toml", "epos4.toml",
+                                         "generic-cia402.toml"),
+                         [](const auto& record) {
+                           std::string name = record.param;
+                           std::erase_if(name, [](char c) { return c == '-'; });
+                           return name.substr(0, name.find('.'));
+                         });
 
 INSTANTIATE_TEST_SUITE_P(Records, ShelfDrives, testing::Values("odrive.toml", "moteus.toml"),
                          [](const auto& record) { return std::string(record.param).substr(0, 6); });
