@@ -10,6 +10,10 @@ make_root() {  # arguments: SYSTEM ROOT [PACKAGE..]
   rm -rf "$root"
   mkdir -p "$root"
   debootstrap --variant=minbase --include="$(tr ' ' , <<< "ca-certificates $*")" "$release" "$root" > "$root/../debootstrap.log"
+  # As Debian's installer leaves it: a release without its updates has a browser that is too old for the tests
+  cat > "$root/etc/apt/sources.list" <<< "deb http://deb.debian.org/debian $release main
+deb http://deb.debian.org/debian $release-updates main
+deb http://deb.debian.org/debian-security $release-security main"
   touch "$root/../complete"
 }
 

@@ -18,11 +18,15 @@ export function arguments_() {
 /** Waits until a condition holds in the page. */
 export function until(page, condition) { return page.waitForFunction(condition, null, { timeout: PATIENCE_MS }); }
 
-/** A child process whose output is stored. */
+const children = [];
+process.once('exit', () => children.forEach((child) => child.kill('SIGKILL')));  // else ctest waits for them after an error
+
+/** A child process whose output is stored; it ends with this one. */
 export class Program {
   constructor(command, args) {
     this.heard = '';
     this.child = spawn(command, args, { stdio: ['pipe', 'pipe', 'inherit'] });
+    children.push(this.child);
     this.child.stdout.on('data', (data) => { this.heard += data; this.news?.(); });
     this.end_ = new Promise((resolve) => this.child.on('exit', (code) => { this.news?.(); resolve(code); }));
   }
@@ -58,9 +62,14 @@ function startChromium({ chromium }, webgl) {
 async function startFirefox({ _bidiFirefox: firefox }, webgl) {
   const screen = webgl ? new Program('Xvfb', ['-displayfd', '1', '-screen', '0', '1600x1000x24', '-nolisten', 'tcp']) : null;
   const env = screen ? { ...process.env, DISPLAY: `:${await screen.says(/^(\d+)\n/)}`, LIBGL_ALWAYS_SOFTWARE: '1' } : process.env;
-  const started = await firefox.launch({
+  const options = {
     executablePath: process.env.LIGATURE_FIREFOX ?? '/usr/bin/firefox-esr', headless: !screen, env,
     firefoxUserPrefs: webgl ? { 'webgl.force-enabled': true } : { 'webgl.disabled': true },
+  };
+  const started = await firefox.launch(options).catch((error) => {
+    if (!/unknown command/.test(error.message)) throw error;
+    const remedy = 'apt install firefox-esr, with the -security suite of your Debian among apt\'s sources';
+    throw new Error(`${error.message.split('\n')[0]}: this Firefox is too old; remedy: ${remedy}`);
   });
   if (screen) started.on('disconnected', () => screen.stop());
   return started;
