@@ -1,6 +1,8 @@
 // The simulated CiA 402 drive of a device record: its objects and its process data.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "ligature_source_dir.hpp"
 #include "protocol/device/device_file.hpp"
 #include "sim_device/profile_node.hpp"
@@ -38,14 +40,14 @@ struct Drive {
   }
   void start() { node.on_frame(can::encode_nmt(can::NmtCommand::kStart), Time(0), sensed, out); }
   void map_inputs() {
-    EXPECT_EQ(write({0x1801, 1}, can::kPdoOff | id_of_inputs, 4).kind, SdoKind::kWritten);
+    EXPECT_EQ(write({0x1801, 1}, can::kPdoOff | kInputsId, 4).kind, SdoKind::kWritten);
     EXPECT_EQ(write({0x1A01, 1}, 0x3141'0110, 4).kind, SdoKind::kWritten);
     EXPECT_EQ(write({0x1A01, 0}, 1, 1).kind, SdoKind::kWritten);
     EXPECT_EQ(write({0x1801, 2}, 1, 1).kind, SdoKind::kWritten);
-    EXPECT_EQ(write({0x1801, 1}, id_of_inputs, 4).kind, SdoKind::kWritten);
+    EXPECT_EQ(write({0x1801, 1}, kInputsId, 4).kind, SdoKind::kWritten);
   }
 
-  static constexpr std::uint32_t id_of_inputs = 0x283;
+  static constexpr std::uint32_t kInputsId = 0x283;
   device::Device record = of_file();
   ProfileNode node;
   Sensed sensed{.position_counts = 1234, .buttons = can::profile::kButtonDeadMan};
@@ -67,7 +69,7 @@ TEST(ProfileNode, HasTheObjectsAndUnitsOfTheRecord) {
 TEST(ProfileNode, MapsTheInputsWhileTheirPdoIsOffAndSendsThemAtEachSync) {
   Drive drive(can::kElbow);
   EXPECT_EQ(drive.write({0x1A01, 1}, 0x3141'0110, 4).value, can::sdo_abort::kWrongDeviceState) << "the PDO is on";
-  EXPECT_EQ(drive.write({0x1801, 1}, can::kPdoOff | Drive::id_of_inputs, 4).kind, SdoKind::kWritten);
+  EXPECT_EQ(drive.write({0x1801, 1}, can::kPdoOff | Drive::kInputsId, 4).kind, SdoKind::kWritten);
   EXPECT_EQ(drive.write({0x1A01, 1}, 0x6041'0010, 4).value, can::sdo_abort::kCannotBeMapped);
   drive.start();
   EXPECT_EQ(drive.sync().size(), 1U) << "the inputs are not mapped";
@@ -77,7 +79,7 @@ TEST(ProfileNode, MapsTheInputsWhileTheirPdoIsOffAndSendsThemAtEachSync) {
   EXPECT_EQ(sent[0].id, 0x183U);
   EXPECT_EQ(can::data_word(sent[0]) >> 16U & 0xFFFF'FFFFU, 1234U);
   EXPECT_EQ(can::data_word(sent[0]) >> 48U, 0U) << "the torque, and not the buttons";
-  EXPECT_EQ(sent[1].id, Drive::id_of_inputs);
+  EXPECT_EQ(sent[1].id, Drive::kInputsId);
   EXPECT_EQ(sent[1].dlc, 2);
   EXPECT_EQ(can::data_word(sent[1]), 0b10U) << "dead_man_bit 1";
   drive.node.on_frame(can::encode_nmt(can::NmtCommand::kResetNode), Time(0), drive.sensed, drive.out);
