@@ -206,7 +206,9 @@ void add_doctor(CLI::App& doctor, DoctorOptions& o) {
   doctor.add_option("--report", o.report, "JSON file for everything found, with wake-ups in bins of 1 us");
   doctor.add_option("--compare", o.compare, "print two reports side by side, and do nothing else")->expected(2);
   doctor.add_option("--device", o.device, "device record (TOML): also says what its drives cannot promise");
-  doctor.add_option("--watchdog-ms", o.watchdog_ms, "what `run` will have, for --device")
+  doctor
+      .add_option("--watchdog-ms", o.watchdog_ms,
+                  "the --watchdog-ms that `run` will have; what the drives of --device do depends on it")
       ->check(within(2, 10000))
       ->capture_default_str();
   add_can(doctor, o.can, "SocketCAN interface to look at, may be given again");
