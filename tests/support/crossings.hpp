@@ -6,12 +6,12 @@
 #include <iterator>
 #include <vector>
 
-#include "firmware/physics/rod/contact/closest.hpp"
+#include "firmware/physics/closest.hpp"
 #include "firmware/physics/rod/model/state.hpp"
 
 namespace ligature::test {
 
-using physics::rod::closest;
+using physics::closest;
 using physics::rod::State;
 using physics::rod::Vec;
 

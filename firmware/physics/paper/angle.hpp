@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "firmware/physics/paper/v3.hpp"
+#include "firmware/physics/v3.hpp"
 
 namespace ligature::physics {
 

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "firmware/physics/paper/closest_points.hpp"
+#include "firmware/physics/closest.hpp"
 #include "firmware/physics/paper/contact.hpp"
 
 // Narrow phase: gap, closest points and normal of a candidate, that is a pair of bodies that may touch soon.
@@ -50,12 +50,12 @@ void ContactSolver::measure(const ThreadState& s, Candidate& c, ContactRow& row)
   const Obstacle* o = outside ? &obstacles_[static_cast<std::size_t>(j)] : nullptr;
   const V3<double> p1 = s.p.at(i), q1 = s.p.at(i + 1);
   const V3<double> p2 = outside ? o->p0_m : s.p.at(j), q2 = outside ? o->p1_m : s.p.at(j + 1);
-  const ClosestPoints near = closest_points(p1, q1, p2, q2);
-  orient(c, near.apart, near.distance_m, cross(q1 - p1, q2 - p2));
+  const Closest<V3<double>> near = closest(p1, q1, p2, q2);
+  orient(c, -near.between, root(near.distance2), cross(q1 - p1, q2 - p2));
   row.node[0] = i, row.node[1] = i + 1;
-  row.weight[0] = 1.0 - near.a, row.weight[1] = near.a;
+  row.weight[0] = 1.0 - near.s, row.weight[1] = near.s;
   row.node[2] = outside ? nobody : j, row.node[3] = outside ? nobody : j + 1;
-  row.weight[2] = outside ? 0.0 : near.b - 1.0, row.weight[3] = outside ? 0.0 : -near.b;
+  row.weight[2] = outside ? 0.0 : near.t - 1.0, row.weight[3] = outside ? 0.0 : -near.t;
   row.v_outside = outside ? to_pack(o->v_m_per_s) : Pack{};
 }
 

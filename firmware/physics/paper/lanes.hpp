@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "firmware/physics/members.hpp"
-#include "firmware/physics/paper/v3.hpp"
+#include "firmware/physics/v3.hpp"
 
 namespace ligature::physics {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "firmware/physics/paper/closest_points.hpp"
+#include "firmware/physics/closest.hpp"
 
 namespace ligature::physics {
 namespace {
@@ -44,7 +44,7 @@ ObstacleCourse::ObstacleCourse(const scene::Scene& scene, const ThreadModel& m, 
 
 bool ObstacleCourse::is_clear(const Obstacle& o, const ThreadModel& m, const ThreadState& s) const noexcept {
   for (int i = 0; i < m.nodes - 1; ++i)
-    if (closest_points(s.p.at(i), s.p.at(i + 1), o.p0_m, o.p1_m).distance_m < 2.0 * m.radius_m) return false;
+    if (root(closest(s.p.at(i), s.p.at(i + 1), o.p0_m, o.p1_m).distance2) < 2.0 * m.radius_m) return false;
   return true;
 }
 

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "firmware/physics/paper/closest_points.hpp"
+#include "firmware/physics/closest.hpp"
 #include "firmware/physics/paper/friction.hpp"
 #include "firmware/physics/paper/separation.hpp"
 
@@ -19,12 +19,13 @@ PaperContact::PaperContact(const ThreadModel& model, const PaperContactSettings&
 
 void PaperContact::respond(const ThreadModel& m, ThreadState& s, const SegmentPair& pair) noexcept {
   const int node[4] = {pair.first, pair.first + 1, pair.second, pair.second + 1};
-  const ClosestPoints near = closest_points(s.p.at(node[0]), s.p.at(node[1]), s.p.at(node[2]), s.p.at(node[3]));
-  min_gap_m_ = smaller(min_gap_m_, near.distance_m - 2.0 * m.radius_m);
-  if (near.distance_m >= 2.0 * m.radius_m || !(near.distance_m > 0.0)) return;
+  const auto near = closest(s.p.at(node[0]), s.p.at(node[1]), s.p.at(node[2]), s.p.at(node[3]));
+  const double distance_m = root(near.distance2);
+  min_gap_m_ = smaller(min_gap_m_, distance_m - 2.0 * m.radius_m);
+  if (distance_m >= 2.0 * m.radius_m || !(distance_m > 0.0)) return;
   ++active_;
-  const V3<double> n = (1.0 / near.distance_m) * near.apart;
-  const Shares share = shares(near.a, near.b);
+  const V3<double> n = (-1.0 / distance_m) * near.between;
+  const Shares share = shares(near.s, near.t);
   const double part[4] = {share.a, share.b, share.c, share.d};
   double w[4], mobility = 0.0;
   V3<double> v{};
@@ -34,14 +35,14 @@ void PaperContact::respond(const ThreadModel& m, ThreadState& s, const SegmentPa
     v = v + part[k] * s.v.at(node[k]);
   }
   if (!(mobility > 0.0)) return;
-  const double force = repulsion_N(settings_.repulsion, m.radius_m, near.distance_m, dot(v, n), settings_.capped);
+  const double force = repulsion_N(settings_.repulsion, m.radius_m, distance_m, dot(v, n), settings_.capped);
   const double normal =
-      bridson_impulse_N_s(settings_.capped ? force * m.step_s : magnitude(force) * m.step_s, near.a, near.b);
+      bridson_impulse_N_s(settings_.capped ? force * m.step_s : magnitude(force) * m.step_s, near.s, near.t);
   const V3<double> friction = settings_.capped
                                   ? capped_friction_N_s(settings_.stick, settings_.slip, normal, 1.0 / mobility, v, n)
                                   : m.step_s * coulomb_friction_N(settings_.slip, force, v, n);
-  const Shares shift = separating_shifts(separation_m(m.radius_m, near.distance_m, kSafety * m.radius_m), share,
-                                         {w[0], w[1], w[2], w[3]});
+  const Shares shift =
+      separating_shifts(separation_m(m.radius_m, distance_m, kSafety * m.radius_m), share, {w[0], w[1], w[2], w[3]});
   const double move[4] = {shift.a, shift.b, shift.c, shift.d};
   for (int k = 0; k < 4; ++k) {
     const V3<double> pushed = velocity_after(s.v.at(node[k]), part[k], normal, w[k], n);

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "firmware/physics/members.hpp"
-#include "firmware/physics/paper/v3.hpp"
+#include "firmware/physics/v3.hpp"
 
 namespace ligature::physics {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "firmware/physics/paper/v3.hpp"
+#include "firmware/physics/v3.hpp"
 
 namespace ligature::physics {
 

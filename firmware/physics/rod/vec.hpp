@@ -3,13 +3,13 @@
 // makes AVX code from this on x86-64, and pairs of NEON registers on arm64.
 
 #include <cmath>
-#include <cstring>
 
 #include "firmware/physics/members.hpp"
+#include "firmware/physics/v3.hpp"
 
 namespace ligature::physics::rod {
 
-using Lanes = double __attribute__((vector_size(32)));
+using Lanes = Pack;
 
 /// A vector of the world frame; the fourth lane is padding (zero by convention).
 struct Vec {
@@ -43,17 +43,6 @@ inline Vec& operator-=(Vec& a, Vec b) noexcept { return a = a - b; }
 [[nodiscard]] inline Lanes squares(Vec a, Vec b, Vec c, Vec d) noexcept {
   return sums(a.v * a.v, b.v * b.v, c.v * c.v, d.v * d.v);
 }
-[[nodiscard]] inline Lanes root(Lanes q) noexcept {
-  Lanes out;
-  for (int l = 0; l < 4; ++l) out[l] = std::sqrt(q[l]);
-  return out;
-}
-[[nodiscard]] inline Lanes load(const double* at) noexcept {
-  Lanes out;
-  std::memcpy(&out, at, sizeof out);
-  return out;
-}
-inline void store(double* at, Lanes value) noexcept { std::memcpy(at, &value, sizeof value); }
 [[nodiscard]] inline double norm(Vec a) noexcept { return std::sqrt(dot(a, a)); }
 
 /// a x b: rotate(a * rotate(b) - rotate(a) * b), rotate = (y, z, x).
@@ -65,28 +54,12 @@ inline void store(double* at, Lanes value) noexcept { std::memcpy(at, &value, si
 
 /// Four vectors, stored by component. Templates use it to compute four cases at once: their types of vector and number
 /// are either Vec and double, or Vecs and Lanes.
-struct Vecs {
-  Lanes x, y, z;
-};
-
-[[nodiscard]] inline Vecs operator+(const Vecs& a, const Vecs& b) noexcept { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-[[nodiscard]] inline Vecs operator-(const Vecs& a, const Vecs& b) noexcept { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-[[nodiscard]] inline Vecs operator*(Lanes s, const Vecs& a) noexcept { return {s * a.x, s * a.y, s * a.z}; }
-[[nodiscard]] inline Lanes dot(const Vecs& a, const Vecs& b) noexcept { return a.x * b.x + a.y * b.y + a.z * b.z; }
+using Vecs = V3<Lanes>;
 [[nodiscard]] inline Vecs four(Vec a, Vec b, Vec c, Vec d) noexcept {
   const Lanes ab = __builtin_shufflevector(a.v, b.v, 0, 4, 2, 6), cd = __builtin_shufflevector(c.v, d.v, 0, 4, 2, 6);
   const Lanes y0 = __builtin_shufflevector(a.v, b.v, 1, 5, 3, 7), y1 = __builtin_shufflevector(c.v, d.v, 1, 5, 3, 7);
   return {__builtin_shufflevector(ab, cd, 0, 1, 4, 5), __builtin_shufflevector(y0, y1, 0, 1, 4, 5),
           __builtin_shufflevector(ab, cd, 2, 3, 6, 7)};
-}
-
-/// at_least_0: max(q, 0). clamp01: q limited to [0, 1].
-[[nodiscard]] inline double at_least_0(double q) noexcept { return q > 0.0 ? q : 0.0; }
-[[nodiscard]] inline Lanes at_least_0(Lanes q) noexcept { return q > Lanes{} ? q : Lanes{}; }
-[[nodiscard]] inline double clamp01(double q) noexcept { return at_least_0(q < 1.0 ? q : 1.0); }
-[[nodiscard]] inline Lanes clamp01(Lanes q) noexcept {
-  const Lanes one = Lanes{} + 1.0;
-  return at_least_0(q < one ? q : one);
 }
 
 /// 3 x 3 matrix by columns. The columns have three names instead of being an array, because gcc 12 keeps arrays of

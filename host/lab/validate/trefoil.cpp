@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "firmware/physics/rod/contact/closest.hpp"
+#include "firmware/physics/closest.hpp"
 #include "host/knot/recognise.hpp"
 #include "host/lab/validate/cases.hpp"
 #include "host/lab/validate/rods.hpp"
@@ -39,7 +39,7 @@ double nearest_strands(const std::vector<Vec>& x, double length) {
   for (std::size_t a = 0; a < edges; ++a) {
     for (std::size_t b = a + 1; b < edges; ++b) {
       if (s[b] - s[a + 1] < skip || length - s[b + 1] + s[a] < skip) continue;
-      least = std::min(least, std::sqrt(physics::rod::closest(x[a], x[a + 1], x[b], x[(b + 1) % edges]).distance2));
+      least = std::min(least, std::sqrt(physics::closest(x[a], x[a + 1], x[b], x[(b + 1) % edges]).distance2));
     }
   }
   return least;

@@ -2,8 +2,8 @@
 // points.
 #include <gtest/gtest.h>
 
+#include "firmware/physics/closest.hpp"
 #include "firmware/physics/paper/bvh.hpp"
-#include "firmware/physics/paper/closest_points.hpp"
 #include "firmware/physics/paper/sweep_and_prune.hpp"
 #include "tests/unit/physics/random_states.hpp"
 
@@ -77,7 +77,7 @@ TEST(BroadPhase, BruteForceMissesNoTouchingPair) {
     find_pairs_brute(spheres, 0.1, 2, pairs);
     for (int i = 0; i < 40; ++i)
       for (int j = i + 2; j < 40; ++j)
-        if (closest_points(p.at(i), p.at(i + 1), p.at(j), p.at(j + 1)).distance_m < 0.1 - 1e-12) {
+        if (root(closest(p.at(i), p.at(i + 1), p.at(j), p.at(j + 1)).distance2) < 0.1 - 1e-12) {
           EXPECT_TRUE(std::binary_search(pairs.pairs.begin(), pairs.pairs.end(), SegmentPair{i, j}));
         }
   }
@@ -94,19 +94,21 @@ TEST(BroadPhase, AFullListSaysSo) {
 }
 
 // The distance of densely sampled pairs of points is an upper bound; the closest points must not be farther apart.
-TEST(ClosestPoints, AreNoFartherThanAnySampledPair) {
+TEST(Closest, AreNoFartherThanAnySampledPair) {
   test::Random random(12);
   auto states = test::degenerate_nodes(4, 13);
   for (int k = 0; k < 2000; ++k) states.push_back(random.nodes(4));
   for (const auto& s : states) {
-    const ClosestPoints c = closest_points(s.p[0], s.p[1], s.p[2], s.p[3]);
-    ASSERT_TRUE(c.a >= 0 && c.a <= 1 && c.b >= 0 && c.b <= 1);
+    const auto c = closest(s.p[0], s.p[1], s.p[2], s.p[3]);
+    ASSERT_TRUE(c.s >= 0 && c.s <= 1 && c.t >= 0 && c.t <= 1);
     for (int i = 0; i <= 10; ++i)
       for (int j = 0; j <= 10; ++j) {
         const V a = s.p[0] + (0.1 * i) * (s.p[1] - s.p[0]), b = s.p[2] + (0.1 * j) * (s.p[3] - s.p[2]);
-        ASSERT_LE(c.distance_m, norm(a - b) + 1e-9);
+        ASSERT_LE(root(c.distance2), norm(a - b) + 1e-9);
       }
-    ASSERT_NEAR(norm(c.apart), c.distance_m, 1e-12);
+    const V apart = s.p[2] + c.t * (s.p[3] - s.p[2]) - (s.p[0] + c.s * (s.p[1] - s.p[0]));
+    ASSERT_NEAR(norm(apart - c.between), 0.0, 1e-12);
+    ASSERT_NEAR(norm(c.between), root(c.distance2), 1e-12);
   }
 }
 

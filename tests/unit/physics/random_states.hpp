@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "firmware/physics/paper/v3.hpp"
+#include "firmware/physics/v3.hpp"
 #include "tests/support/random.hpp"
 
 namespace ligature::physics::test {

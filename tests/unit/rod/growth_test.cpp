@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "firmware/physics/rod/contact/closest.hpp"
+#include "firmware/physics/closest.hpp"
 #include "firmware/physics/rod/contact/pair_search.hpp"
 #include "tests/support/random.hpp"
 #include "tests/unit/rod/rods.hpp"

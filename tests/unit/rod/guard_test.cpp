@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "firmware/physics/rod/contact/closest.hpp"
+#include "firmware/physics/closest.hpp"
 #include "firmware/physics/rod/contact/contact_set.hpp"
 #include "tests/support/random.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "firmware/physics/rod/contact/closest.hpp"
+#include "firmware/physics/closest.hpp"
 #include "firmware/physics/rod/contact/contact_set.hpp"
 
 namespace ligature::physics::rod {
@@ -122,7 +122,7 @@ void ContactSet::collect_body(const State& state, const Body& body, int index, d
       longest = std::max(longest, within);
       continue;
     }
-    const Closest c = closest(body.p0, body.p1, state.x[j], state.x[j + 1]);
+    const auto c = closest(body.p0, body.p1, state.x[j], state.x[j + 1]);
     const double distance = std::sqrt(c.distance2), gap = distance - reach;
     least = std::min(least, gap);
     if (gap > look_m) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "firmware/physics/rod/contact/closest.hpp"
+#include "firmware/physics/closest.hpp"
 #include "firmware/physics/rod/contact/contact_set.hpp"
 #include "firmware/physics/rod/contact/smooth.hpp"
 #include "firmware/physics/rod/tuning.hpp"
@@ -103,14 +103,14 @@ void ContactSet::measure(const std::int32_t* places, const State& state) noexcep
                                       static_cast<std::size_t>(pair(2).*end), static_cast<std::size_t>(pair(3).*end)};
   };
   const FourSegments a(segments(&Candidate::a), state.x.data()), b(segments(&Candidate::b), state.x.data());
-  FourClosest c = closest_along<Vecs, Lanes>(a.e, b.e, b.x - a.x);
+  Closest<Vecs> c = closest_along(a.e, b.e, b.x - a.x);
   const Lanes chord = root(c.distance2);
   Lanes distance = chord;
   auto smooth = chord < Lanes{};
   if constexpr (Smooth) {
     const Lanes within =
         each([&](std::size_t l) { return pair(l).reach_m + tuning.close * pair(l).near_m + pair(l).bulge_m; });
-    const FourClosest curves = closest(a.smooth(state, corner_.data()), b.smooth(state, corner_.data()), c);
+    const Closest<Vecs> curves = closest_on_curves(a.smooth(state, corner_.data()), b.smooth(state, corner_.data()), c);
     const auto close = smooth = chord < within;
     c.s = close ? curves.s : c.s, c.t = close ? curves.t : c.t;
     c.between.x = close ? curves.between.x : c.between.x;
@@ -140,7 +140,7 @@ void ContactSet::bend(const State& state) noexcept {
 void ContactSet::bend_row(Contact& c, int at, double s, const State& state) const noexcept {
   const auto j = static_cast<std::size_t>(c.node[at]);
   const double side = at == 0 ? -0.25 : 0.25, h_before = state.cut_before[j], h_after = state.cut_after[j];
-  const double p = at_least_0(1.0 - s / h_before), q = at_least_0(1.0 - (1.0 - s) / h_after);
+  const double p = larger(1.0 - s / h_before, 0.0), q = larger(1.0 - (1.0 - s) / h_after, 0.0);
   const auto add = [&](std::int32_t node, double w) {
     c.node[c.count] = node, c.w[c.count] = w;
     ++c.count;

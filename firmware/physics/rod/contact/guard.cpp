@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "firmware/physics/rod/contact/closest.hpp"
+#include "firmware/physics/closest.hpp"
 #include "firmware/physics/rod/contact/contact_set.hpp"
 
 namespace ligature::physics::rod {
@@ -42,7 +42,7 @@ struct Share {
   /// separates the segments before and after the step. Its normal is the shortest connection of the segments. A tenth
   /// of their distance must remain, as in the test by speed.
   [[nodiscard]] bool passes_by(std::int32_t a, std::int32_t b) const noexcept {
-    const Closest c = closest(x[a], x[a + 1], x[b], x[b + 1]);
+    const auto c = closest(x[a], x[a + 1], x[b], x[b + 1]);
     const auto along = [&](Vec q) { return dot(c.between, q); };
     const double a1 = along(x[a + 1] - x[a]), b0 = along(x[b] - x[a]), b1 = along(x[b + 1] - x[a]);
     const double before = std::min(b0, b1) - std::max(0.0, a1);

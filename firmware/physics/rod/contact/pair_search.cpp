@@ -151,7 +151,7 @@ bool BroadPhase::consider(const State& state, const Motion& motion, const Outloo
   pair.due = along ? static_cast<double>(std::sqrt(apart2) / kSlack - halves) - reach : 0.0;
   if (!along) {
     spent_ += price::kExact;
-    const Closest c = closest(state.x[a], state.x[a + 1], state.x[b], state.x[b + 1]);
+    const auto c = closest(state.x[a], state.x[a + 1], state.x[b], state.x[b + 1]);
     if (c.distance2 > limit * limit) return true;
     pair.due = std::sqrt(c.distance2) - reach - bulge;
   }

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "firmware/physics/rod/contact/closest.hpp"
+#include "firmware/physics/closest.hpp"
 #include "firmware/physics/rod/model/state.hpp"
 #include "firmware/physics/rod/tuning.hpp"
 
@@ -37,8 +37,8 @@ struct SmoothOf {
   [[nodiscard]] Vector along(Number s) const noexcept {
     return e - (0.25 * h_before * near_before(s)) * before + (0.25 * h_after * near_after(s)) * after;
   }
-  [[nodiscard]] Number near_before(Number s) const noexcept { return at_least_0(1.0 - s * h_before); }
-  [[nodiscard]] Number near_after(Number s) const noexcept { return at_least_0(1.0 - (1.0 - s) * h_after); }
+  [[nodiscard]] Number near_before(Number s) const noexcept { return larger(1.0 - s * h_before, Number{}); }
+  [[nodiscard]] Number near_after(Number s) const noexcept { return larger(1.0 - (1.0 - s) * h_after, Number{}); }
 };
 
 struct SmoothSegment : SmoothOf<Vec, double> {
@@ -72,9 +72,8 @@ struct SmoothSegment : SmoothOf<Vec, double> {
 /// of the chords. The error is about 0.01 diameters. One step is not enough: the normal would still jump by a third of
 /// a corner's angle (tests). About 460 instructions, for one pair or for four at once.
 template <class Vector, class Number>
-[[nodiscard]] inline ClosestOf<Vector, Number> closest(const SmoothOf<Vector, Number>& a,
-                                                       const SmoothOf<Vector, Number>& b,
-                                                       ClosestOf<Vector, Number> c) noexcept {
+[[nodiscard]] inline Closest<Vector> closest_on_curves(const SmoothOf<Vector, Number>& a,
+                                                       const SmoothOf<Vector, Number>& b, Closest<Vector> c) noexcept {
   for (int k = 0; k < 2; ++k) {
     const Vector da = a.along(c.s), db = b.along(c.t), r = b.at(c.t) - a.at(c.s);
     const Number aa = dot(da, da), bb = dot(db, db), ab = dot(da, db), ar = dot(da, r), br = dot(db, r);

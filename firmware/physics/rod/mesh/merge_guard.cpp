@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "firmware/physics/rod/contact/closest.hpp"
+#include "firmware/physics/closest.hpp"
 #include "firmware/physics/rod/mesh/refine.hpp"
 
 namespace ligature::physics::rod {

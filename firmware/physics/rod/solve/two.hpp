@@ -10,14 +10,7 @@ namespace ligature::physics::rod {
 using Two = double __attribute__((vector_size(16)));
 
 /// Two vectors, one in each lane.
-struct Twos {
-  Two x, y, z;
-};
-
-[[nodiscard]] inline Twos operator+(const Twos& a, const Twos& b) noexcept { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-[[nodiscard]] inline Twos operator-(const Twos& a, const Twos& b) noexcept { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-[[nodiscard]] inline Twos operator*(Two s, const Twos& a) noexcept { return {s * a.x, s * a.y, s * a.z}; }
-[[nodiscard]] inline Two dot(const Twos& a, const Twos& b) noexcept { return a.x * b.x + a.y * b.y + a.z * b.z; }
+using Twos = V3<Two>;
 
 [[nodiscard]] inline Twos both(const Vec& left, const Vec& right) noexcept {
   return {Two{left.v[0], right.v[0]}, Two{left.v[1], right.v[1]}, Two{left.v[2], right.v[2]}};

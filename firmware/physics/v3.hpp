@@ -1,8 +1,8 @@
 #pragma once
-// Vectors of three components over any scalar type: double in tests, Pack (four nodes at once) in the loop.
+// Vectors of three components over any scalar type: double for one vector, Pack for four at once.
 
 #include "firmware/physics/members.hpp"
-#include "firmware/physics/paper/pack.hpp"
+#include "firmware/physics/pack.hpp"
 
 namespace ligature::physics {
 

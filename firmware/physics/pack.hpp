@@ -1,7 +1,7 @@
 #pragma once
-// A SIMD register of four doubles. Force laws are templates over their scalar type: tests use double, the loop uses
-// Pack and so computes four nodes at once. GCC's and Clang's vector types work on any processor, and use AVX2 on
-// x86-64-v3.
+// A SIMD register of four doubles. Force laws and distances are templates over their scalar type: tests use double, the
+// loop uses Pack and so computes four nodes or pairs at once. GCC's and Clang's vector types work on any processor, and
+// use AVX2 on x86-64-v3.
 
 #include <cmath>
 
@@ -42,6 +42,12 @@ S smaller(S a, S b) noexcept {
 template <class S>
 S magnitude(S a) noexcept {
   return larger(a, -a);
+}
+
+/// q limited to [0, 1].
+template <class S>
+S clamp01(S q) noexcept {
+  return larger(smaller(q, S{} + 1.0), S{});
 }
 
 inline bool any(bool m) noexcept { return m; }
