@@ -38,7 +38,7 @@ class Pieces(unittest.TestCase):
                 print(f"{scene} {' '.join(overrides)}: {len(counts)} pieces, the longest of {max(counts)} instructions; {said.strip()}")
                 self.assertEqual(len(counts), int(said.split()[0]), "callgrind counted each piece")
                 self.assertGreater(len(counts), 300)
-                self.assertGreater(int(said.split()[2]), 10, "contacts")
+                self.assertGreater(int(said.split()[2]), 5, "contacts")
                 self.assertGreater(sum(counts), 5 * MOST, "the pieces are the work of these ticks")
                 self.assertLess(max(counts), MOST)
 

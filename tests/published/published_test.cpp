@@ -15,8 +15,7 @@ namespace {
 
 /// Runs a case's quick form. Every judged figure must hold, except those named in `missed`, which
 /// docs/measurements/published.md explains. When one of these holds by a margin, that page must be changed; one near
-/// its tolerance holds with one compiler and misses with another (a turn round a peg: 2.5 % with GCC 12, 1.7 % with GCC
-/// 14).
+/// its tolerance may hold with one compiler and miss with another.
 validate::Findings expect_met(const std::string& name, const std::set<std::string>& missed = {},
                               scene::Accuracy accuracy = scene::Accuracy::kBalanced) {
   const auto all = all_cases();
@@ -71,13 +70,18 @@ TEST(Published, Post) { expect_met("post"); }
 
 // friction round a bar
 TEST(Published, Capstan) {
-  expect_met("capstan", {"peg, mu = 0.3, 1.00 turns: T_hi/T_lo"});
+  // The tolerance is 2 %; with a brake that lets strands be pressed into the bar one turn is 1.7 % off
+  for (const auto& f : expect_met("capstan")) {
+    if (is_judged(f)) {
+      EXPECT_LT(f.error, 0.01) << f.what;
+    }
+  }
   expect_met("capstan", {}, scene::Accuracy::kFine);
 }
 
 TEST(Published, CapstanPulledAlongItsAxis) {
   const std::string at = "theta = 4.00 pi: F / (mu T) at T R^2 / B = ";
-  expect_met("capstan-axis", {at + "1", at + "9"});
+  expect_met("capstan-axis", {at + "1"});
   // Why one figure misses at `fine`: below T R^2 / B = 3/2 coils that lie flat are unstable. They become steeper, up to
   // an angle a with cos(a)^4 = T R^2 / (1.5 B), which is 25.4 degrees here. The closed form assumes flat coils.
   const auto all = expect_met("capstan-axis", {at + "1"}, scene::Accuracy::kFine);

@@ -5,22 +5,19 @@
 namespace ligature::physics::rod {
 
 Plan plan(const Plan& last, const TickReport& report, const Situation& now, const Numerics& numerics) noexcept {
-  const bool fast = numerics.is_fast(now.hand_m_per_s);
-  const double tired_at = last.labours ? tuning.rested : tuning.tired;
+  const bool fast = numerics.is_fast(now.hand_d);
   Plan next;
-  next.budget = numerics.budget(now.nodes, now.hand_m_per_s);
-  next.labours = static_cast<double>(report.work) > tired_at * static_cast<double>(numerics.budget(now.nodes, 0.0)) ||
-                 report.cut_at >= 0;
+  next.budget = numerics.budget(now.nodes, now.hand_d);
+  const auto budget = static_cast<double>(numerics.budget(now.nodes, 0.0));
+  const bool labours = static_cast<double>(report.work) > tuning.labours * budget || report.cut_at >= 0;
   next.leniency = report.cut_short > 0 ? std::min(tuning.most_leniency, tuning.leniency_up * last.leniency)
                                        : std::max(1.0, tuning.leniency_down * last.leniency);
   next.pace_m_per_s = 0.5 * now.apart_m_per_s;
-  next.letting_go = now.released || (last.letting_go && (now.waits || now.node_m_per_s > tuning.thrown_m_per_s));
-  const int more = static_cast<int>(tuning.letting_go_share * numerics.substeps);
-  next.substeps = next.letting_go ? std::max(numerics.max_substeps, more)
-                  : fast          ? numerics.max_substeps
-                  : now.waits     ? report.substeps
-                  : next.labours  ? std::min(numerics.substeps, std::max(tuning.fewest_substeps, numerics.substeps / 2))
-                                  : numerics.substeps;
+  next.letting_go = now.released || (last.letting_go && (now.waits || now.node_d > numerics.max_substeps));
+  next.substeps = next.letting_go || fast ? numerics.max_substeps
+                  : now.waits             ? report.substeps
+                  : labours ? std::min(numerics.substeps, std::max(tuning.fewest_substeps, numerics.substeps / 2))
+                            : numerics.substeps;
   next.new_matrix = (fast && !now.waits) || next.substeps != report.substeps;
   return next;
 }

@@ -10,11 +10,11 @@ namespace ligature::physics::rod {
 
 /// What happens to the thread in a tick, and what came of the last one.
 struct Situation {
-  double hand_m_per_s = 0.0;   ///< speed of the fastest hold
+  double hand_d = 0.0;         ///< motion of the fastest hold in a tick, thread diameters
   double apart_m_per_s = 0.0;  ///< largest relative speed of two holds; of a single hold: its speed
   bool released = false;       ///< a hold was released since the last tick
   bool waits = false;          ///< a substep that the last tick began is not solved yet
-  double node_m_per_s = 0.0;   ///< speed of the fastest node
+  double node_d = 0.0;         ///< motion of the fastest node in a tick, thread diameters
   int nodes = 0;
 };
 
@@ -24,10 +24,9 @@ struct Plan {
   long budget = 0;            ///< of contact work, instructions
   double leniency = 1.0;      ///< 1 to 6: factor of the tolerance's speed-dependent part; grows after ticks cut short
   double pace_m_per_s = 0.0;  ///< half the relative speed of the hands
-  bool labours = false;       ///< the last tick used most of its budget, so this one has fewer substeps
-  bool letting_go = false;    ///< a hold was released, and the thread is still fast
+  bool letting_go = false;    ///< a hold was released, and a node still moves by over a diameter in a substep
   bool new_matrix = false;    ///< Newton's inverse matrix of the last tick serves no more
-  LIGATURE_MEMBERS(Plan, substeps, budget, leniency, pace_m_per_s, labours, letting_go, new_matrix)
+  LIGATURE_MEMBERS(Plan, substeps, budget, leniency, pace_m_per_s, letting_go, new_matrix)
 };
 
 [[nodiscard]] Plan plan(const Plan& last, const TickReport& report, const Situation& now,

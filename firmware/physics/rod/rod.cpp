@@ -219,12 +219,13 @@ Rod::HandSpeed Rod::set_hands(const std::array<Vec, kMaxHolds>& goals, std::arra
 void Rod::begin_tick(const HandSpeed& hands, const TimeLeft& left) noexcept {
   const bool was_alone = alone_;
   alone_ = hands.holds < 2 && hands.fastest == 0.0 && std::none_of(bodies.begin(), bodies.end(), moves);
+  const double in_a_tick_d = numerics_.tick_s / (2.0 * material_.radius_m);
   plan_ = plan(plan_, report_,
-               {.hand_m_per_s = hands.fastest,
+               {.hand_d = in_a_tick_d * hands.fastest,
                 .apart_m_per_s = hands.apart,
                 .released = released_,
                 .waits = patience_.waits(),
-                .node_m_per_s = touches() ? motion_.fastest() : 0.0,
+                .node_d = touches() ? in_a_tick_d * motion_.fastest() : 0.0,
                 .nodes = state_.nodes()},
                numerics_);
   released_ = false;

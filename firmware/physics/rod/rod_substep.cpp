@@ -23,8 +23,8 @@ bool Rod::relist(long reserve) noexcept {
   Outlook outlook{2.0 * material_.radius_m, 2.0 * material_.radius_m * tuning.skin_d, near_m_, 0.0};
   broad_.keep_impulses(contacts_.pairs);
   stale_ = true;
-  const long share = static_cast<long>(tuning.ahead_share * static_cast<double>(work_.budget()));
-  for (const double ticks : {tuning.ahead_ticks, 0.125 * tuning.ahead_ticks, 0.0}) {
+  const long share = work_.budget() / 2;
+  for (const double ticks : {1.0, 0.125, 0.0}) {
     const long most = std::min(work_.left() - reserve, share);
     if (most < BroadPhase::least_cost(state_.nodes())) break;
     horizon_s_ = outlook.horizon_s = ticks * numerics_.tick_s;
@@ -112,7 +112,7 @@ bool Rod::prepare_metric(double dt_s) noexcept {
 double Rod::settled() const noexcept {
   const double speed = std::max(plan_.pace_m_per_s, alone_ ? 0.0 : tuning.stir * stir_m_per_s_);
   const double settled = numerics_.settled_m_per_s + plan_.leniency * numerics_.settled_share * speed;
-  return std::min(settled, tuning.creep * std::max(tuning.still_m_per_s, motion_.fastest()));
+  return std::min(settled, tuning.creep * std::max(numerics_.settled_m_per_s, motion_.fastest()));
 }
 
 // Chooses the contacts that are solved, and with them the range of nodes that is solved with contacts. @return nothing
@@ -139,7 +139,7 @@ Outcome Rod::settle_directly(const Effort& effort) noexcept {
   if (!solves_directly() || patience_.sweeps_only()) return Outcome::kUnsolved;
   const long after = report_.substeps - substep_index_ - 1;
   Effort own = effort;
-  own.settled_m_per_s = std::max(effort.settled_m_per_s, numerics_.newton_m_per_s);
+  own.settled_m_per_s = std::max(effort.settled_m_per_s, numerics_.settled_m_per_s);
   own.enough_m_per_s =
       tuning.newton_near * std::max(own.settled_m_per_s, tuning.newton_near * numerics_.settled_m_per_s);
   own.fair = (effort.work - after * (look_cost_ + rows_cost_)) / (after + 1);

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "firmware/physics/rod/contact/contact_set.hpp"
+#include "firmware/physics/rod/tuning.hpp"
 #include "tests/support/random.hpp"
 
 namespace ligature::physics::rod {
@@ -170,9 +171,9 @@ TEST(ContactNewton, KnowsItsContactsAgain) {
   EXPECT_GT(again, 15);  // about 75 with the default seed, at least 49 with others
 }
 
-// The table of couplings between contacts is kept between substeps; entries of contacts without load are removed in
-// time.
-TEST(ContactNewton, KeepsWhatCarriesLoad) {
+// The table of couplings between contacts is kept between substeps, also for contacts without load. The entries of a
+// contact that has moved along its segments are removed.
+TEST(ContactNewton, KeepsWhatHasNotMoved) {
   constexpr int kMany = 60;
   Jam jam(5);
   std::vector<Contact> rows(static_cast<std::size_t>(kMany), jam.rows[0]);
@@ -194,9 +195,11 @@ TEST(ContactNewton, KeepsWhatCarriesLoad) {
   };
   EXPECT_EQ(substep(1.0, 0.0), 0);
   EXPECT_EQ(substep(1.0, 0.0), kMany);
-  EXPECT_EQ(substep(0.0, 1.0), kMany);  // kept for some substeps without load
-  for (int k = 0; k < 10; ++k) (void)substep(0.0, 1.0);
-  EXPECT_EQ(newton.loaded(), 0);
+  for (int k = 0; k < 10; ++k) EXPECT_EQ(substep(0.0, 1.0), kMany);
+  for (const double by : {0.9 * tuning.moved, 0.2 * tuning.moved}) {  // together more than tuning.moved
+    rows[7].w[0] += 0.5 * by, rows[7].w[1] -= 0.5 * by;
+    EXPECT_EQ(substep(0.0, 1.0), by > 0.5 * tuning.moved ? kMany : kMany - 1);
+  }
 }
 
 TEST(ContactNewton, PutsOffAndResumes) {

@@ -43,7 +43,7 @@ Hostile attack(Rod rod, unsigned seed, double ball, double thrown_m_per_s, doubl
   return seen;
 }
 
-long budget_of(const Numerics& numerics, int nodes) { return numerics.budget(nodes, 1.0); }
+long budget_of(const Numerics& numerics, int nodes) { return numerics.budget(nodes, 2.0); }
 
 TEST(Work, NoStateCostsMoreThanTheBudget) {  // 154 to 2000 nodes, at rest and thrown, hands at up to 100 m/s
   for (const auto& [nodes, ball] : {std::pair{154, 6.0}, {154, 20.0}, {500, 6.0}, {500, 20.0}, {2000, 60.0}}) {

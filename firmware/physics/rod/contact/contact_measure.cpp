@@ -76,7 +76,7 @@ bool ContactSet::find_due(const Motion& motion, double dt_s, Work& work) noexcep
       if (gap_m > pair.near_m + 2.0 * dt_s * motion.rate(a, b)) {
         pair.impulse = Vec{};
       } else {
-        const bool close = gap_m < tuning.close * pair.near_m && pair.bulge_m > 0.0;
+        const bool close = gap_m < pair.near_m && pair.bulge_m > 0.0;
         (close ? close_ : far_).push_back(static_cast<std::int32_t>(due_.size()));
         if (close) bent_ = {std::min(bent_.first, pair.a), std::max(bent_.last, pair.b + 1)};
         due_.push_back(k);
@@ -108,8 +108,7 @@ void ContactSet::measure(const std::int32_t* places, const State& state) noexcep
   Lanes distance = chord;
   auto smooth = chord < Lanes{};
   if constexpr (Smooth) {
-    const Lanes within =
-        each([&](std::size_t l) { return pair(l).reach_m + tuning.close * pair(l).near_m + pair(l).bulge_m; });
+    const Lanes within = each([&](std::size_t l) { return pair(l).reach_m + pair(l).near_m + pair(l).bulge_m; });
     const Closest<Vecs> curves = closest_on_curves(a.smooth(state, corner_.data()), b.smooth(state, corner_.data()), c);
     const auto close = smooth = chord < within;
     c.s = close ? curves.s : c.s, c.t = close ? curves.t : c.t;

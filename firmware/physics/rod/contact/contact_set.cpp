@@ -43,7 +43,7 @@ void ContactSet::let_stick(double mu_static, const Vec* v) noexcept {
     if (dot(c.p, c.p) == 0.0) {
       Vec u = velocity(c, v);
       u -= dot(u, c.n) * c.n;
-      holds = dot(u, u) < tuning.still_m_per_s * tuning.still_m_per_s;
+      holds = dot(u, u) < tuning.settled_m_per_s * tuning.settled_m_per_s;
     }
     if (holds) c.mu = mu_static;
   }
@@ -165,8 +165,7 @@ void ContactSet::start(BandSolver& solver, const Numerics& numerics, double dt_s
   for (int k = 0; k < rows_; ++k) {
     Contact& c = contacts_[static_cast<std::size_t>(k)];
     c.soft = numerics.recovery / (numerics.contact_N_per_m * dt_s * dt_s);
-    c.target =
-        c.gap_m > 0.0 ? -c.gap_m / dt_s : std::min(-numerics.recovery * c.gap_m / dt_s, numerics.max_recovery_m_per_s);
+    c.target = -(c.gap_m > 0.0 ? 1.0 : numerics.recovery) * c.gap_m / dt_s;
     c.p = in_cone(longer * c.p, c.n, c.mu);
     c.u_free = velocity<Turns>(k, v);
     c.loaded = dot(c.p, c.p) > 0.0;
@@ -244,8 +243,7 @@ double ContactSet::unsettled_fraction(const Vec* v, double dt_s) const noexcept 
   for (int k = 0; k < rows_; ++k) {
     const Contact& c = contacts_[static_cast<std::size_t>(k)];
     const double closing_m = -dt_s * dot(velocity<false>(k, v), c.n);
-    const double spare_m = c.is_pair() ? 0.0 : tuning.brake_give * c.reach_m;  // only strands jam
-    const double room_m = std::max(c.gap_m + spare_m, tuning.brake_creep_d * c.reach_m);
+    const double room_m = std::max(c.gap_m, tuning.wild_m_per_s * dt_s);
     if (closing_m > room_m) share = std::min(share, room_m / closing_m);
   }
   return share;
@@ -279,7 +277,7 @@ void ContactSet::note_stuck(const Vec* v) noexcept {
     if (pn <= 0.0 || k >= rows_) continue;
     const Vec u = velocity<Turns>(k, v), along = u - dot(u, c.n) * c.n;
     const bool within_cone = dot(c.p, c.p) - pn * pn < most * most;
-    *c.stuck = within_cone || dot(along, along) < tuning.still_m_per_s * tuning.still_m_per_s ? 1 : 0;
+    *c.stuck = within_cone || dot(along, along) < tuning.settled_m_per_s * tuning.settled_m_per_s ? 1 : 0;
   }
 }
 

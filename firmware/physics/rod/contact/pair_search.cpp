@@ -146,7 +146,7 @@ bool BroadPhase::consider(const State& state, const Motion& motion, const Outloo
   pair.b = static_cast<std::int32_t>(b);
   pair.reach_m = reach;
   pair.bulge_m = bulge;
-  pair.near_m = std::min(outlook.near_m, tuning.bent * (arc - reach));
+  pair.near_m = std::min(outlook.near_m, 0.5 * (arc - reach));  // half the gap of neighbours on a straight thread
   // Neighbours along the thread get a lower bound of their gap from their spheres, exact where the thread is straight.
   pair.due = along ? static_cast<double>(std::sqrt(apart2) / kSlack - halves) - reach : 0.0;
   if (!along) {

@@ -2,8 +2,8 @@
 // The points along the thread at which a contact's impulse acts.
 
 #include <algorithm>
+
 #include "firmware/physics/members.hpp"
-#include "firmware/physics/rod/tuning.hpp"
 
 namespace ligature::physics::rod {
 
@@ -26,8 +26,7 @@ struct Touch {
     const double last2 = way_a * way_a + way_b * way_b;
     if (last2 > 0.0) {
       const double rest = (now_a * way_a + now_b * way_b) / last2;  // remaining share of the last way; < 0: overshoot
-      const double best = rest < 1.0 ? share / (1.0 - rest) : 1.0;
-      share = std::clamp(best, tuning.least_share, std::min(1.0, tuning.more_share * share));
+      share = rest < 1.0 ? std::min(1.0, share / (1.0 - rest)) : 1.0;
     }
     way_a = now_a, way_b = now_b;
     a += share * now_a, b += share * now_b;

@@ -46,34 +46,28 @@ struct Material {
 /// (docs/rod-contact.md).
 struct Numerics {
   double tick_s = 1e-3;
-  int substeps = tuning.substeps;      ///< time steps per tick
-  int max_substeps = tuning.substeps;  ///< time steps per tick when a hand is faster than fast_m_per_s
-  double fast_m_per_s = tuning.fast_m_per_s;
-  int max_passes = tuning.max_passes;               ///< most passes of the sweep solver per substep
+  int substeps = tuning.substeps;                   ///< time steps per tick
+  int max_substeps = tuning.substeps;               ///< time steps per tick when a hand is fast, or a thread flies
+  int max_passes = 1 << 30;                         ///< most passes of the sweep solver per substep; as here: no limit
   long work = tuning.work;                          ///< contact budget of a tick, in instructions (work.hpp)
   long work_per_node = tuning.work_per_node;        ///< added to the budget for each node
-  double rush = tuning.rush;                        ///< relative budget increase for hands faster than 2 fast_m_per_s
+  double rush = tuning.rush;                        ///< relative increase of the budget for fast hands
   long given_work = 0;                              ///< > 0: replaces the whole budget, for any thread and hands
   double settled_m_per_s = tuning.settled_m_per_s;  ///< tolerance: a pass that changes no velocity by more is the last
   double settled_share = tuning.settled_share;      ///< added to it: this times half the hands' relative speed
-  double newton_m_per_s = tuning.still_m_per_s;     ///< least tolerance of Newton's method
   double recovery = tuning.recovery;                ///< share of a penetration that a substep removes
-  double max_recovery_m_per_s = tuning.max_recovery_m_per_s;
   double contact_N_per_m = tuning.contact_N_per_m;  ///< stiffness of a contact
 
-  [[nodiscard]] constexpr bool is_fast(double hand_m_per_s) const noexcept {
-    return hand_m_per_s > 1.001 * fast_m_per_s;
-  }
-  /// Contact budget of a tick, in instructions.
-  [[nodiscard]] constexpr long budget(int nodes, double hand_m_per_s) const noexcept {
+  /// A hand is fast if it moves by more than a thread diameter in a tick (hand_d).
+  [[nodiscard]] static constexpr bool is_fast(double hand_d) noexcept { return hand_d > 1.001; }
+  /// Contact budget of a tick, in instructions: for fast hands 1 + rush times that of slow ones.
+  [[nodiscard]] constexpr long budget(int nodes, double hand_d) const noexcept {
     if (given_work > 0) return given_work;
     const auto whole = static_cast<double>(work + work_per_node * nodes);
-    const double more = is_fast(0.5 * hand_m_per_s) ? rush : is_fast(hand_m_per_s) ? tuning.half_rush : 0.0;
-    return static_cast<long>((1.0 + more) * whole);
+    return static_cast<long>((is_fast(hand_d) ? 1.0 + rush : 1.0) * whole);
   }
-  LIGATURE_MEMBERS(Numerics, tick_s, substeps, max_substeps, fast_m_per_s, max_passes, work, work_per_node, rush,
-                   given_work, settled_m_per_s, settled_share, newton_m_per_s, recovery, max_recovery_m_per_s,
-                   contact_N_per_m)
+  LIGATURE_MEMBERS(Numerics, tick_s, substeps, max_substeps, max_passes, work, work_per_node, rush, given_work,
+                   settled_m_per_s, settled_share, recovery, contact_N_per_m)
 };
 
 }  // namespace ligature::physics::rod

@@ -35,10 +35,8 @@ void ContactSet::take_impulses(BandSolver& solver, Vec* v) noexcept {
 // Computes the inverse matrix Z of the present matrix A, and restarts newton_ with it. @return false if too little work
 // is left.
 bool ContactSet::renew_matrix(const BandSolver& solver, Search& search) noexcept {
-  const int first = std::max(window_first_ - tuning.margin, 0);
-  const int last = std::min(window_last_ + tuning.margin, solver.nodes() - 1);
-  if (!search.pay(price::factors(last - first + 1))) return false;
-  newton_.measure(solver, first, last);
+  if (!search.pay(price::factors(window_last_ - window_first_ + 1))) return false;
+  newton_.measure(solver, window_first_, window_last_);
   newton_.start(contacts_.data(), rows_);
   return search.fresh = true;
 }
@@ -90,7 +88,7 @@ std::optional<Outcome> ContactSet::step_on(Search& search) noexcept {
       for (const auto k : newton_.rows()) plain_[static_cast<std::size_t>(k)].v = p[k].v;
     }
     if (newton_.unknowns() > ContactNewton::kMostUnknowns) return Outcome::kUnsolved;
-    const long cost = begins ? tuning.sweeps * price::dense_sweep(newton_.loaded())
+    const long cost = begins ? price::dense_sweep(newton_.loaded())
                              : price::newton(newton_.loaded(), newton_.unknowns()) +
                                    price::exchange(newton_.exchanges(), newton_.slots());
     const long answering = price::answer(newton_.loaded(), search.nodes) + price::look(rows_);
@@ -103,9 +101,10 @@ std::optional<Outcome> ContactSet::step_on(Search& search) noexcept {
     }
     report.work += cost;
     if (begins) {
-      for (int k = 0; k < tuning.sweeps; ++k) newton_.sweep<Friction>(rows, p, u);
-    } else if (++report.passes > tuning.most_steps || !newton_.solve<Friction>(rows, p, u, effort.time)) {
-      return effort.time.is_over() ? wait() : Outcome::kUnsolved;
+      newton_.sweep<Friction>(rows, p, u);
+    } else {
+      ++report.passes;
+      if (!newton_.solve<Friction>(rows, p, u, effort.time)) return effort.time.is_over() ? wait() : Outcome::kUnsolved;
     }
   }
 }
@@ -125,7 +124,7 @@ Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* 
   }
   search.resumed = newton_.resume(p_.data());
   if (search.resumed) answer();
-  for (;; ++search.look) {  // each look but the first is followed by a step, and so most_steps bounds them
+  for (;; ++search.look) {  // ends because each look costs work
     if (search.look == tuning.stale && !search.fresh && !renew_matrix(solver, search)) break;
     const Outcome looked = look_at_all(solver, v, search);
     if (looked == Outcome::kUnsolved) return looked;
@@ -140,8 +139,8 @@ Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* 
 template <bool Friction>
 Outcome ContactSet::settle_directly(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept {
   const long nodes = window_last_ - window_first_ + 1;
-  if (nodes + 2L * tuning.margin > ContactNewton::kWidest) return Outcome::kUnsolved;
-  const long matrix = newton_.covers(window_first_, window_last_) ? 0 : price::factors(nodes + 2L * tuning.margin);
+  if (nodes > ContactNewton::kWidest) return Outcome::kUnsolved;
+  const long matrix = newton_.covers(window_first_, window_last_) ? 0 : price::factors(nodes);
   if (matrix + price::look(rows_) > effort.work) return Outcome::kLater;
   for (int k = 0; k < rows_; ++k) {
     const auto at = static_cast<std::size_t>(k);

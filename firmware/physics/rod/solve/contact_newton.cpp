@@ -50,11 +50,6 @@ void ContactNewton::start(const Contact* rows, int count) noexcept {
   slot_.assign(static_cast<std::size_t>(count), -1);
   rows_.clear();
   begins_ = begins_ || !put_off_;
-  for (Slot& slot : slots_) {
-    if (put_off_) break;
-    slot.idle = slot.row < 0 || slot.kind == Kind::kOpen ? slot.idle + 1 : 0;
-    slot.dead = slot.dead || slot.idle > tuning.idle;
-  }
   index_slots();
   for (int k = 0; k < count; ++k) {
     const std::int32_t s = find(rows[k].node[0] - z_.first(), rows[k].node[2] - z_.first());

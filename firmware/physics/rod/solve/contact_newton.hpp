@@ -34,8 +34,8 @@ struct Contact;
 /// Without damping this cycles: a few kinds are wrong, and impulses to which velocities hardly respond (cond W is 1e5)
 /// become a thousand times too large, which makes all other kinds wrong. So a term proportional to the change of each
 /// impulse is added to its equation (a proximal point method [Rockafellar 1976]), which mostly damps such weak
-/// directions. The factor of this term shrinks from step to step, and faster when no kind changes. It grows when a step
-/// has increased the error, and is reset to 1 when new contacts enter. See set_cost().
+/// directions. The factor of this term shrinks from step to step, faster when no kind changes, and is 1 again when new
+/// contacts enter.
 ///
 /// Z may be some substeps old: after each step the caller computes the velocities with the present A.
 class ContactNewton {
@@ -103,9 +103,9 @@ class ContactNewton {
   bool solve(const Contact* rows, Vec* p, Vec* u, TickTime& time = TickTime::endless()) noexcept;
   /// The members that an image saves (image.hpp): all but those that are computed again in every Newton step.
   [[nodiscard]] static auto members(ContactNewton& self) noexcept {
-    auto& [z, spread, slot, at, rows, slots, coupled, put_off, begins, changed, error2, last_error2, cost, w, unknowns,
-           count, carrying, dense, on, stuck, with, rest] = self;
-    return std::tie(z, slot, at, rows, slots, coupled, put_off, begins, changed, error2, last_error2, cost, w);
+    auto& [z, spread, slot, at, rows, slots, coupled, put_off, begins, changed, cost, w, unknowns, count, carrying,
+           dense, on, stuck, with, rest] = self;
+    return std::tie(z, slot, at, rows, slots, coupled, put_off, begins, changed, cost, w);
   }
 
  private:
@@ -120,15 +120,14 @@ class ContactNewton {
     double w[kMostNodes] = {};
     Vec n{};
     double soft = 0.0, r_n = 0.0, r_t = 0.0, per_r_n = 0.0, per_r_t = 0.0;
-    bool dead = false;  ///< to be removed: its contact has moved too far, or no longer carries load
-    int idle = 0;       ///< substeps since it carried load
+    bool dead = false;  ///< to be removed: its contact has moved too far
     Kind kind = Kind::kNew;
     Vec guess{};        ///< impulse at put_off()
     Vec q{};            ///< p_t - r_t u_t
     Vec along{};        ///< direction of q
     double most = 0.0;  ///< radius of the friction disc, mu p_n
-    LIGATURE_MEMBERS(Slot, count, node, row, next, w, n, soft, r_n, r_t, per_r_n, per_r_t, dead, idle, kind, guess, q,
-                     along, most)
+    LIGATURE_MEMBERS(Slot, count, node, row, next, w, n, soft, r_n, r_t, per_r_n, per_r_t, dead, kind, guess, q, along,
+                     most)
     [[nodiscard]] bool carries() const noexcept { return row >= 0 && kind >= Kind::kSticks; }
   };
   /// One unknown x of the linear system: the contact gets x times the impulse vector `with`, such that along . u + give
@@ -161,7 +160,6 @@ class ContactNewton {
   void exchange(std::size_t a, std::size_t b) noexcept;
   [[nodiscard]] std::size_t carrying() const noexcept;
   void bring_forward() noexcept;
-  void set_cost() noexcept;
   template <bool Friction>
   void list_unknowns(const Contact* rows, const Vec* p, const Vec* u) noexcept;
   template <bool Two>
@@ -184,11 +182,10 @@ class ContactNewton {
   std::vector<Slot> slots_;
   std::size_t coupled_ = 0;  // number of slots whose blocks of W are computed
   bool put_off_ = false;
-  bool begins_ = true;                       // the system has contacts that no step has solved yet
-  int changed_ = 0;                          // kinds changed by the last read()
-  double error2_ = 0.0, last_error2_ = 0.0;  // squared residual of the last read(); at the start of the last step
-  double cost_ = 1.0;                        // factor of the proximal term, 0 to 1
-  Couplings w_;                              // W of all slots
+  bool begins_ = true;  // the system has contacts that no step has solved yet
+  int changed_ = 0;     // kinds changed by the last read()
+  double cost_ = 1.0;   // factor of the proximal term, 0 to 1
+  Couplings w_;         // W of all slots
   // Unknowns of the first carrying_ slots: first those along the normals, then those across the sliding directions,
   // then (for sticking contacts only) those along the sliding directions
   std::vector<Unknown> unknowns_;

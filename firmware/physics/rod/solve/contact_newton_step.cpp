@@ -32,7 +32,7 @@ double ContactNewton::read(const Contact* rows, const Vec* p, const Vec* u) noex
     changed_ += kind != std::exchange(slot.kind, kind);
     if (kind != Kind::kOpen) count_ += !Friction ? 1 : sticks ? 3 : 2;
   }
-  return error2_ = largest2;
+  return largest2;
 }
 
 template <bool Friction>
@@ -44,8 +44,8 @@ void ContactNewton::sweep(const Contact* rows, Vec* p, Vec* u) noexcept {
     const Slot& slot = slots_[at];
     const Vec now = u[k] + moved(at);
     const double un = dot(now, c.n), pn = dot(p[k], c.n);
-    const double to_n = std::max(0.0, pn - tuning.sweep_share * slot.r_n * (un + c.soft * pn - c.target));
-    const Vec q = (p[k] - pn * c.n) - tuning.sweep_share * slot.r_t * (now - un * c.n);
+    const double to_n = std::max(0.0, pn - slot.r_n * (un + c.soft * pn - c.target));
+    const Vec q = (p[k] - pn * c.n) - slot.r_t * (now - un * c.n);
     const double size2 = dot(q, q), most = Friction ? c.mu * to_n : 0.0;
     const Vec to = to_n * c.n + (size2 > most * most ? most / std::sqrt(size2) : 1.0) * q, step = to - p[k];
     if (dot(step, step) == 0.0) continue;
@@ -224,22 +224,10 @@ bool ContactNewton::assemble(const Vec* p, TickTime& time) noexcept {
   return true;
 }
 
-// Sets cost_, the factor of the proximal (damping) terms in this step.
-void ContactNewton::set_cost() noexcept {
-  const bool worse = error2_ > tuning.cost_worse * tuning.cost_worse * last_error2_;
-  if (std::exchange(begins_, false)) {
-    cost_ = 1.0;
-  } else if (changed_ == 0) {
-    cost_ *= tuning.cost_fade_known;
-  } else {
-    cost_ = worse ? std::min(1.0, tuning.cost_more * std::max(tuning.cost_least, cost_)) : tuning.cost_fade * cost_;
-  }
-  last_error2_ = error2_;
-}
-
 template <bool Friction>
 bool ContactNewton::solve(const Contact* rows, Vec* p, Vec* u, TickTime& time) noexcept {
-  set_cost();
+  cost_ *= changed_ == 0 ? tuning.cost_fade_known : tuning.cost_fade;
+  if (std::exchange(begins_, false)) cost_ = 1.0;
   bring_forward();
   list_unknowns<Friction>(rows, p, u);
   if (!assemble<Friction>(p, time) || !dense_.solve(time)) return false;
