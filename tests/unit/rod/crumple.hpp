@@ -45,7 +45,7 @@ inline void crumple_apart(Rod& rod, unsigned seed, double radius, double speed_m
   const double diameter = 2.0 * rod.material().radius_m, limit = radius * diameter, apart = 1.2 * diameter;
   const auto is_free = [&](std::size_t i, Vec to) {
     for (std::size_t j = 0; j + 2 < i; ++j) {
-      if (closest(state.x[j], state.x[j + 1], state.x[i - 1], to).distance2 < apart * apart) return false;
+      if (physics::closest(state.x[j], state.x[j + 1], state.x[i - 1], to).distance2 < apart * apart) return false;
     }
     return i < 2 || norm(to - state.x[i - 2]) > apart;
   };

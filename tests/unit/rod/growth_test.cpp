@@ -49,7 +49,7 @@ std::set<std::pair<int, int>> promised(const State& state, const Motion& motion,
       if (arc < BroadPhase::kLeastArc * d) continue;
       const double reach = arc < 0.5 * std::numbers::pi * d ? d * std::sin(arc / d) : d;
       const double limit = reach + outlook.skin_m + outlook.horizon_s * motion.rate(a, b);
-      const double distance2 = closest(state.x[a], state.x[a + 1], state.x[b], state.x[b + 1]).distance2;
+      const double distance2 = physics::closest(state.x[a], state.x[a + 1], state.x[b], state.x[b + 1]).distance2;
       if (distance2 < limit * limit) all.emplace(static_cast<int>(a), static_cast<int>(b));
     }
   }
@@ -91,7 +91,8 @@ TEST(Growth, TheListHoldsEveryPairItPromises) {
           EXPECT_TRUE(listed.emplace(pair.a, pair.b).second) << "twice";
           const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
           const double gap =
-              std::sqrt(closest(state.x[a], state.x[a + 1], state.x[b], state.x[b + 1]).distance2) - pair.reach_m;
+              std::sqrt(physics::closest(state.x[a], state.x[a + 1], state.x[b], state.x[b + 1]).distance2) -
+              pair.reach_m;
           EXPECT_LE(pair.due, gap + 1e-12);
         }
         for (const auto& pair : promised(state, made.motion, outlook)) EXPECT_TRUE(listed.contains(pair)) << n;

@@ -27,7 +27,7 @@ struct Two {
     motion.measure(state.v.data());
     Candidate pair;
     pair.a = 0, pair.b = 2, pair.reach_m = kDiameter_m;
-    pair.due = std::sqrt(closest(state.x[0], state.x[1], state.x[2], state.x[3]).distance2) - pair.reach_m;
+    pair.due = std::sqrt(physics::closest(state.x[0], state.x[1], state.x[2], state.x[3]).distance2) - pair.reach_m;
     ContactSet contacts;
     contacts.pairs = {pair};
     return contacts.safe_fraction_of_pairs(motion, state, kSubstep_s);
@@ -58,7 +58,7 @@ TEST(Guard, LetsNothingThrough) {
     for (auto& v : two.state.v) v = vec(15.0);
     const auto distance = [&](double t_s) {
       const auto at = [&](std::size_t i) { return two.state.x[i] + t_s * two.state.v[i]; };
-      return std::sqrt(closest(at(0), at(1), at(2), at(3)).distance2);
+      return std::sqrt(physics::closest(at(0), at(1), at(2), at(3)).distance2);
     };
     const double share = two.share(), begun = distance(0.0);
     (share == 1.0 ? free : held)++;

@@ -86,7 +86,7 @@ std::vector<NearPair> near_pairs(Crossing& crossing) {
   std::vector<NearPair> near;
   for (const Candidate& pair : before) {
     const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
-    const auto c = closest(x[a], x[a + 1], x[b], x[b + 1]);
+    const auto c = physics::closest(x[a], x[a + 1], x[b], x[b + 1]);
     const double gap_m = std::sqrt(c.distance2) - kStrandDiameter_m;
     if (gap_m >= kNear_m) continue;
     const bool contact = std::any_of(contacts.begin(), contacts.end(),

@@ -98,13 +98,13 @@ TEST(Smooth, FourAtATimeAreAsOne) {
     const auto chords = closest_along(fours.e, others.e, others.x - fours.x);
     const auto curves = closest_on_curves(fours, others, chords);
     for (int l = 0; l < 4; ++l) {
-      const auto chord = closest(a[l].x, a[l].x + a[l].e, b[l].x, b[l].x + b[l].e);
+      const auto chord = physics::closest(a[l].x, a[l].x + a[l].e, b[l].x, b[l].x + b[l].e);
       EXPECT_NEAR(chords.distance2[l], chord.distance2, 1e-9 * kCurveDiameter_m * kCurveDiameter_m)
           << round << ' ' << l;
       // Case 1 has parallel segments, where any point is correct.
       EXPECT_NEAR(chords.s[l], chord.s, l == 1 ? 1.0 : 1e-6) << round << ' ' << l;
       if (l == 2) continue;  // case 2 has a segment of zero length, whose curve has no tangent at its middle
-      const auto curve = closest_on_curves(a[l], b[l], Closest<Vec>{chords.s[l], chords.t[l], 0.0, Vec{}});
+      const auto curve = closest_on_curves(a[l], b[l], physics::Closest<Vec>{chords.s[l], chords.t[l], 0.0, Vec{}});
       EXPECT_NEAR(curves.distance2[l], curve.distance2, 1e-9 * kCurveDiameter_m * kCurveDiameter_m)
           << round << ' ' << l;
       EXPECT_NEAR(curves.t[l], curve.t, 1e-6) << round << ' ' << l;
@@ -122,7 +122,7 @@ TEST(Smooth, ClosestPointsOfBentStrands) {
     for (std::size_t i = 2; i < 5; ++i) {
       for (std::size_t j = 2; j < 5; ++j) {
         const SmoothSegment one(a, i, kCurveDiameter_m), other(b, j, kCurveDiameter_m);
-        const auto chords = closest(a.x[i], a.x[i + 1], b.x[j], b.x[j + 1]);
+        const auto chords = physics::closest(a.x[i], a.x[i + 1], b.x[j], b.x[j + 1]);
         const double least = closest_by_trying(one, other);
         // Skipped: too far apart for a contact, or a deeper overlap than occurs.
         if (least > 1.2 * kCurveDiameter_m || least < 0.9 * kCurveDiameter_m) continue;
@@ -155,10 +155,10 @@ TEST(Smooth, NormalTurnsSteadily) {
       State strand;
       strand.resize(4);
       for (int i = 0; i < 4; ++i) strand.x[static_cast<std::size_t>(i)] = at + make(0, 1e-3 * (i - 1.5), 0);
-      Closest<Vec> nearest;
+      physics::Closest<Vec> nearest;
       nearest.distance2 = 1.0;
       for (std::size_t j = 1; j + 2 < 14; ++j) {
-        auto c = closest(bent.x[j], bent.x[j + 1], strand.x[1], strand.x[2]);
+        auto c = physics::closest(bent.x[j], bent.x[j + 1], strand.x[1], strand.x[2]);
         if (smooth)
           c = closest_on_curves(SmoothSegment(bent, j, kCurveDiameter_m), SmoothSegment(strand, 1, kCurveDiameter_m),
                                 c);
