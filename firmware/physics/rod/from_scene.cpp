@@ -122,7 +122,6 @@ Numerics numerics_of(const scene::Scene& scene) noexcept {
     case scene::Accuracy::kFine:
       n.substeps = n.max_substeps = 40;
       n.settled_m_per_s = 1e-5;
-      n.max_passes = 40;
       n.work = 40'000'000;
       break;
   }

@@ -23,7 +23,7 @@ bool Rod::relist(long reserve) noexcept {
   Outlook outlook{2.0 * material_.radius_m, 2.0 * material_.radius_m * tuning.skin_d, near_m_, 0.0};
   broad_.keep_impulses(contacts_.pairs);
   stale_ = true;
-  const long share = work_.budget() / 2;
+  const long share = work_.budget() / 2;  // the most that a list may cost
   for (const double ticks : {1.0, 0.125, 0.0}) {
     const long most = std::min(work_.left() - reserve, share);
     if (most < BroadPhase::least_cost(state_.nodes())) break;

@@ -30,16 +30,16 @@ struct Tuning {
   double most_cut_d = 0.35;
 
   // ---- How exactly contacts are solved ----
-  /// Tolerance of a velocity, m/s, and slip below which a contact sticks (1/10 d per second); and what is added to it
-  /// for each m/s of half the hands' relative speed. With 0.012 corners of segments hooked onto each other in 9 of 20
-  /// pulls, with 0.004 in none of 5. Test: Overhand.*
+  /// settled_m_per_s: tolerance of a velocity, m/s, and slip below which a contact sticks (1/10 d per second).
+  /// settled_share: what is added to the tolerance for each m/s of half the hands' relative speed. With a share of
+  /// 0.012 corners of segments hooked onto each other in 9 of 20 pulls, with 0.004 in none of 5. Test: Overhand.*
   double settled_m_per_s = 3e-5, settled_share = 0.004;
   /// Share of the thread's own speed that counts as speed of the hands when the tolerance is chosen; the larger of the
   /// two speeds is used. Test: Overhand.MayBeLetGoAtTenNewtons
   double stir = 0.15;
-  /// The tolerance is at most this share of the fastest node's speed, or of settled_m_per_s where all nodes are slower:
-  /// a thread at rest hardly creeps: on a desk at 0.07 um/s, without this bound at 0.65. Test:
-  /// StaticFriction.AThreadAtRestHardlyCreeps*
+  /// The tolerance is at most this share of the fastest node's speed, or of settled_m_per_s where all nodes are slower.
+  /// A thread at rest on a desk creeps at 0.07 um/s with this bound, and at 0.65 without it. Test:
+  /// Friction.AThreadAtRestHardlyCreeps
   double creep = 0.1;
   /// Leniency, a factor on the tolerance: its largest value, its growth after a tick that was cut short, its decay
   /// after any other. Test: Plan.ToleranceGrows*
@@ -62,10 +62,10 @@ struct Tuning {
   // ---- What is given up when the work does not suffice ----
   /// Contact budget of a tick, instructions, and its part for each node: what a tick can afford. Test: Work.*
   long work = 4'300'000, work_per_node = 2500;
-  /// Substeps of a tick; after a tick that used the budget up half of them, but at least fewest_substeps. With six the
-  /// errors cause overlaps, which cost more than was saved. Test: Labour.LeavesTen*
+  /// Substeps of a tick; after a tick that used more than the share `labours` of the budget, half of them, but at least
+  /// fewest_substeps. With six the errors cause overlaps, which cost more than was saved. Test: Labour.LeavesTen*,
+  /// Plan.Substeps*
   int substeps = 16, fewest_substeps = 10;
-  /// Share of the budget: a tick that used more is followed by one with fewer substeps. Test: Plan.Substeps*
   double labours = 0.25;
   /// Share by which the budget of a tick grows for a hand that moves by more than a diameter in a tick. Test:
   /// Overhand.IsDrawnTightWithoutStandingStill
