@@ -48,6 +48,15 @@ TEST(Plan, SubstepsFollowTheTable) {
   }
 }
 
+TEST(Plan, AFastHandHasALargerBudget) {
+  const auto budget = [](double hand_d) {
+    return plan({}, after(0.2), {.hand_d = hand_d, .nodes = 154}, kBalanced).budget;
+  };
+  EXPECT_EQ(budget(0.0), kBudget);
+  EXPECT_EQ(budget(1.0), kBudget);
+  EXPECT_EQ(budget(1.1), static_cast<long>((1.0 + tuning.rush) * static_cast<double>(kBudget)));
+}
+
 TEST(Plan, FineHasMoreSubstepsInEveryCase) {
   Numerics fine = kBalanced;
   fine.substeps = fine.max_substeps = 40;
