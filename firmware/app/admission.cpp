@@ -125,7 +125,7 @@ std::optional<std::string> objection_of(const Admission& a, double no_loss_m_per
     std::snprintf(
         text, sizeof text,
         "--no-loss %g: found %.1f %% of the time lost by a knot drawn at %g m/s a hand, allowed %.1f; remedy: "
-        "suture.accuracy = \"fast\", fewer suture.nodes, or --physics-core",
+        "suture.accuracy = \"fast\", or fewer suture.nodes",
         no_loss_m_per_s, 100.0 * lost(knot), knot.speed_m_per_s, 100.0 * kNoLoss);
     return text;
   }

@@ -76,7 +76,7 @@ class Setup {
                                  const can::Sdo*& answer) {
     auto [got, other] = transfer(bus_, wait_, request, patience_);
     if (other) return other;
-    if (!got) return describe(node_, object, "no answer");
+    if (!got) return describe(node_, object, "no answer; remedy: check its power, node id, bit rate and cable");
     const bool missing = got->kind == can::SdoKind::kAbort &&
                          (got->value == can::sdo_abort::kNoSuchObject || got->value == can::sdo_abort::kNoSuchSubIndex);
     if (missing && times_.drive.may_lack(object)) {
@@ -141,7 +141,7 @@ SdoAnswer transfer(CanBus& bus, BusWait& wait, const can::Frame& request, Nanose
 
 std::optional<std::string> configure_drives(CanBus& bus, BusWait& wait, const can::StartupTimes& times,
                                             std::vector<std::string>* lacks, Nanoseconds patience) {
-  if (!bus.send(can::encode_nmt(can::NmtCommand::kEnterPreOperational))) return "the bus takes no frames";
+  if (!bus.send(can::encode_nmt(can::NmtCommand::kEnterPreOperational))) return "the bus takes no frames (down, or bus-off); remedy: ligature-firmware doctor --can INTERFACE";
   for (const can::NodeId node : can::profile::kJointNodes) {
     if (auto error = Setup(bus, wait, node, times, patience, lacks).run()) return error;
   }

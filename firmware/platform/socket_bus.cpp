@@ -67,7 +67,8 @@ std::string no_fd(int fd, const std::string& interface) {
   if (ioctl(fd, SIOCGIFMTU, &request) != 0) return std::strerror(errno);
   if (request.ifr_mtu < static_cast<int>(CANFD_MTU))
     return "carries no CAN-FD frames, which these drives need; remedy: ip link set " + interface +
-           " type can bitrate 1000000 dbitrate 5000000 fd on (a vcan: ip link set " + interface + " mtu 72)";
+           " down; ip link set " + interface +
+           " up type can bitrate 1000000 dbitrate 5000000 fd on (a vcan: ip link set " + interface + " mtu 72)";
   if (setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &kOn, sizeof kOn) != 0) return std::strerror(errno);
   return {};
 }
