@@ -22,7 +22,7 @@ double stir(const std::vector<Vec>& v) noexcept {
   return std::sqrt(most2);
 }
 
-bool moves(const Body& body) noexcept { return dot(body.velocity, body.velocity) > 0.0; }
+bool moves(const Body& body) noexcept { return dot(body.velocity, body.velocity) + dot(body.spin, body.spin) > 0.0; }
 
 }  // namespace
 

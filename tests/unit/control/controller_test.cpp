@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "firmware/control/workspace_map.hpp"
 #include "tests/unit/control/controller_rig.hpp"
 
 namespace ligature::control {
@@ -156,6 +157,53 @@ TEST(Controller, ASceneTakenOnTheWayBringsItsForceLimitAndItsPassivity) {
     other.ticks(40);
     EXPECT_EQ(other.controller.hand(0).f_device_N.norm() < 3.0, on);
   }
+}
+
+TEST(Controller, ASceneBringsItsCouplingAndItsLengths) {  // 2400 N/m x 0.05 m x 0.003 = 0.36 N
+  Rig rig;
+  rig.ticks(60);
+  auto hands = Rig::scene();
+  hands.coupling_N_per_m = 2400.0;
+  hands.workspace_scale = 10.0;
+  rig.controller.change_hands(hands);
+  rig.tick();
+  const Linkage linkage(device::omni());
+  const Vec3 tool_m = WorkspaceMap(hands, linkage.home_m()).position(linkage.position({0.0, 0.5, 0.6}));
+  EXPECT_LT((rig.controller.tools()[0].p_WT - tool_m).norm(), 1e-12);
+  rig.tick();
+  EXPECT_NEAR(rig.controller.hand(0).f_wish_N.norm(), 0.36, 1e-9);
+}
+
+TEST(Controller,
+     ASceneEndsAChangeOfTheForceScale) {  // else the new scene would get the scale that was asked of the old
+  Rig rig;
+  rig.ticks(60);
+  rig.controller.change_force_scale(0.006);
+  rig.ticks(210);
+  EXPECT_NEAR(rig.controller.hand(0).f_wish_N.norm(), 0.36, 1e-9);
+  rig.controller.change_hands(Rig::scene());
+  rig.ticks(300);
+  EXPECT_NEAR(rig.controller.hand(0).f_wish_N.norm(), 0.18, 1e-9);
+}
+
+TEST(Controller, ASceneMayNotExceedTheDevicesPeak) {
+  auto hands = Rig::scene();
+  hands.max_force_N = 50.0;
+  Rig rig(hands);
+  rig.to_force();
+  rig.pull_hard();
+  EXPECT_LE(AnyPose(device::omni()).most_N(vector_of(rig.tick().hand[0].torque_Nm)), 3.31);
+}
+
+TEST(Controller, DoesNotEngageAHandThatMoves) {  // the left waist turns, and the tip moves at 0.1 m/s
+  Rig rig;
+  for (int i = 0; i < 500; ++i) {
+    rig.in.reading.hand[0].q_rad[0] += 1e-3 * 0.1 / 0.1924;
+    rig.tick();
+  }
+  EXPECT_EQ(rig.controller.fault(), Fault::kNone);
+  EXPECT_EQ(rig.controller.hand(0).gain, 0.0);
+  EXPECT_GT(rig.controller.hand(1).gain, 0.5);
 }
 
 TEST(Controller, NoJointIsAskedForMoreThanItsDriveGives) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/QR>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -85,6 +86,20 @@ TEST(Kinematics, TheHomePoseIsReachableAndPlausible) {  // solved by Newton's me
   EXPECT_TRUE(arm().is_plausible(q));
   EXPECT_FALSE(arm().is_plausible({2.0, 0.4, 0.6}));
   EXPECT_FALSE(arm().is_plausible({std::nan(""), 0.4, 0.6}));
+}
+
+// The stop between the links limits the forearm's angle less the shoulder's, to -0.81 .. 1.25 rad.
+TEST(Kinematics, TheForearmsStopIsBetweenTheLinks) {
+  EXPECT_FALSE(arm().is_plausible({0.0, 0.87, -0.68}));  // -1.55 between the links
+  EXPECT_TRUE(arm().is_plausible({0.0, 1.7, 2.9}));      // 1.2 between them, although the forearm itself is at 2.9
+  EXPECT_EQ(arm().far_from_stops({0.0, 1.2, 1.3}), (std::array{true, true, true}));
+  EXPECT_EQ(arm().far_from_stops({0.0, 1.6, 0.8}), (std::array{true, false, false}));
+}
+
+TEST(Kinematics, LeversAtHomeAreThoseOfTheDrawing) {  // the waist's: from its axis to the tip, seen from above
+  const auto d = device::omni();
+  ASSERT_EQ(d.home_tip_m[0], 0.0);
+  EXPECT_LT((levers_at_home_m(d) - Vec3(-d.home_tip_m[1], kUpperArm_m, kForearm_m)).norm(), 1e-12);
 }
 
 // A Cartesian device, three drums: linear motion, force = torque / radius.

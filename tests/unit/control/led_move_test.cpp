@@ -145,6 +145,19 @@ TEST(LedMove, CalibrateUndoesTheClutchsOffset) {
   EXPECT_LT(off_m(), 1e-4);
 }
 
+TEST(LedMove, CalibrateGoesToTheOriginOfThePresentScene) {
+  Arms arms;
+  arms.ticks(60);
+  auto hands = Arms::scene();
+  hands.workspace_origin_m = {0.5, 0.0, 0.0};
+  arms.controller.change_hands(hands);
+  arms.to_force();
+  arms.controller.command(rt::CommandKind::kCalibrate);
+  arms.ticks(6000);
+  const Vec3 tool_m = Vec3(0.5, 0.0, 0.0) + arms.tip(0) - arms.linkage.home_m();
+  EXPECT_LT((arms.controller.hand(0).p_WT - tool_m).norm(), 1e-4);
+}
+
 TEST(LedMove, NothingMovesWithoutACommandADeadManOrArming) {
   for (const int without : {0, 1, 2}) {
     Arms arms;

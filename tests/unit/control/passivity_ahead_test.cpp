@@ -43,6 +43,14 @@ struct Lossy {
   std::int64_t tick = 0;
 };
 
+/// 5 N s/m at 0.1 m/s dissipate 5 x 0.1^2 x 1 ms.
+TEST(Passivity, TellsTheEnergyThatItsDamperDissipates) {
+  Passivity p = resting(0.0);
+  (void)p.control(0, Vec3(0.4, 0, 0), Vec3(0.1, 0, 0), Vec3::Zero());
+  ASSERT_GT(p.injected_N_s_per_m(), 0.0);
+  EXPECT_NEAR(p.dissipated_J(), p.injected_N_s_per_m() * 0.1 * 0.1 * kT_s, 1e-12);
+}
+
 /// The account's reserve for torques in transit is the same for every axis and direction.
 TEST(Passivity, NoAxisIsForeseenLessThanAnother) {
   const double first_N = Lossy(Vec3(1, 0, 0), 2e-4, 5).most_N(Vec3(1, 0, 0));

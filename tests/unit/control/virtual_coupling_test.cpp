@@ -73,6 +73,15 @@ TEST(VirtualCoupling, TwoSidesAreSpringsInSeries) {
   EXPECT_NEAR(felt(two_sided(), {true, Vec3(0, 0, 0.1), Vec3::Zero()}).z(), 24.0 * 0.005, 1e-9);
 }
 
+// Both sides damp: 2 m/s in the world are 0.1 m/s at the device, whose damper of 0.5 N s/m carries what the 0.36 N s/m
+// (6 x 0.003 x 20) of the other side carry. At rest against a node, the proxy's speed is 0 in the steady state, so the
+// device's side alone gives the force.
+TEST(VirtualCoupling, TheDevicesSideDampsTheHandsMotion) {
+  scene::Hands h = two_sided();
+  h.device_N_s_per_m = 0.5;
+  EXPECT_NEAR(felt(h, {true, Vec3::Zero(), Vec3::Zero()}, Vec3::Zero(), Vec3(2, 0, 0)).x(), -0.1 / 3.0, 1e-9);
+}
+
 TEST(VirtualCoupling, TheHandFeelsWhatTheThreadFeelsScaled) {  // the springs in series carry the same force
   const scene::Hands h = two_sided();
   const VirtualCoupling coupling(h, kT_s);
@@ -113,6 +122,16 @@ TEST(Admissible, IsTheBoundOfTheDevice) {  // dampings 0.3 and 0.36 N s/m, half 
   EXPECT_TRUE(a.holds());
   h.coupling_N_per_m = 8000.0;
   EXPECT_FALSE(admissible(h, device::omni(), kT_s).holds());
+}
+
+// In series each side's damping counts by the square of the other side's share of the stiffness:
+// B = (B_d K_t^2 + B_t K_d^2) / (K_d + K_t)^2, here (2 x 72^2 + 0.36 x 36^2) / 108^2 = 0.929 N s/m
+TEST(Admissible, ASofterSideCountsWithItsOwnDamping) {
+  scene::Hands h = two_sided();
+  h.device_N_s_per_m = 2.0;
+  const Admissible a = admissible(h, device::omni(), kT_s);
+  EXPECT_NEAR(a.K_N_per_m, 24.0, 1e-12);
+  EXPECT_NEAR(a.largest_N_per_m, (0.3 + (2.0 * 72.0 * 72.0 + 0.36 * 36.0 * 36.0) / (108.0 * 108.0)) / 1.5e-3, 1e-6);
 }
 
 TEST(Admissible, ShippedScenesHold) {

@@ -42,6 +42,17 @@ TEST(Plant, ASceneIsTakenWhileNoForceMayFlow) {
   EXPECT_EQ(rig.plant->thread.nodes_W().size(), 10U) << "the old one comes back to be destroyed elsewhere";
 }
 
+TEST(Plant, TheHandsTakeTheNewScenesWorkspace) {
+  PlantRig rig(false);
+  scene::Scene moved = small_scene();
+  moved.hands.workspace_origin_m[0] += 1.0;
+  rig.offer(moved, false);
+  rig.run(300);
+  ASSERT_EQ(rig.plants.collect(), rig.plant.get());
+  const auto records = rig.records();
+  EXPECT_NEAR(records.back().p_WT_m[0][0] - records.front().p_WT_m[0][0], 1.0, 1e-9);
+}
+
 TEST(Plant, ASceneIsRefusedByTheLoopWhileArmed) {
   PlantRig rig(true);
   rig.offer(other_scene(), false);

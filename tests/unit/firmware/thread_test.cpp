@@ -2,6 +2,9 @@
 // but the loop never waits.
 #include <gtest/gtest.h>
 
+#include <optional>
+#include <vector>
+
 #include "tests/support/random.hpp"
 #include "tests/unit/firmware/virtual_rig.hpp"
 
@@ -188,7 +191,8 @@ TEST(Thread, AResetAndAnotherSceneComeInTheirOrderWithTheTools) {
   }
 }
 
-TEST(Thread, ArmingWaitsForASceneThatIsUnderWay) {
+/// A rig that is sent a scene and ARM while the scene is on its way, then perhaps another command. @return the records
+std::vector<rt::TickRecord> armed_during_a_change(std::optional<rt::CommandKind> then) {
   VirtualRig rig(small_scene(), {20, false});
   control::PlantHandover plants;
   rig.cycle.listen(plants);
@@ -199,14 +203,27 @@ TEST(Thread, ArmingWaitsForASceneThatIsUnderWay) {
   rig.bus.on_sync = [&](std::int64_t sync) {
     if (sync == 200) plants.offer(&plant);
     if (sync == 203) rig.outlets->commands.push({1, rt::CommandKind::kArm});
+    if (sync == 204 && then) rig.outlets->commands.push({2, *then});
   };
   rig.cycle.end_after(300);
   rig.cycle.run();
-  const auto records = rig.records();
   EXPECT_TRUE(plant.taken);
+  EXPECT_EQ(plants.collect(), &plant);
+  return rig.records();
+}
+
+TEST(Thread, ArmingWaitsForASceneThatIsUnderWay) {
+  const auto records = armed_during_a_change({});
   EXPECT_FALSE(records[205].armed) << "the scene is still on its way";
   EXPECT_TRUE(records[215].armed);
-  EXPECT_EQ(plants.collect(), &plant);
+}
+
+TEST(Thread, DisarmAndStopEndAnArmingThatWaits) {
+  for (const auto kind : {rt::CommandKind::kDisarm, rt::CommandKind::kStop}) {
+    const auto records = armed_during_a_change(kind);
+    EXPECT_FALSE(records[215].armed) << static_cast<int>(kind);
+    EXPECT_FALSE(records[299].armed) << static_cast<int>(kind);
+  }
 }
 
 }  // namespace

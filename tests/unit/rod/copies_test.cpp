@@ -108,6 +108,27 @@ TEST(Copy, WithoutContactContinuesToTheBit) {
   EXPECT_GT(set_J, 0.0);
 }
 
+/// A live change of a parameter goes on with the motion of the running rod: bends that stayed and the frames with them.
+TEST(Copy, GoesOnWithBendsThatStay) {
+  const std::vector<std::string> keys{"contact.solver=\"none\"", "suture.yield_strain=0.01", "suture.set_fraction=0.5"};
+  RodSimulation sim = knotted(keys), next = knotted(keys);
+  auto tools = at_the_ends(sim);
+  double set_J = 0.0;
+  for (int k = 0; k < 400; ++k) {
+    tools[1].grip = k < 300;
+    pull(sim, tools, 1);
+    set_J += sim.rod().report().set_J;
+  }
+  ASSERT_GT(set_J, 0.0);
+  ASSERT_TRUE(next.continue_from(sim));
+  auto again = tools;
+  for (int k = 0; k < 50; ++k) {
+    pull(sim, tools, 1);
+    pull(next, again, 1);
+    ASSERT_TRUE(same(sim, next)) << "tick " << k;
+  }
+}
+
 /// reset() assigns the rod of the start to one that has a list of pairs, matrices and impulses of its own.
 TEST(Copy, ResetRepeatsThePullToTheBit) {
   RodSimulation sim = knotted();

@@ -172,7 +172,7 @@ TEST(Growth, AListThatCannotBeAffordedKeepsTheImpulses) {
   const Outlook outlook{kDiameter, 0.5 * kDiameter, 0.1 * kDiameter, 0.0};
   Made made = list_of(state, outlook);
   ASSERT_GT(made.pairs.size(), 100U);
-  for (auto& pair : made.pairs) pair.impulse = make(1.0 + pair.a, 1.0 + pair.b, 0.0);
+  for (auto& pair : made.pairs) pair.impulse = make(1.0 + pair.a, 1.0 + pair.b, 0.0), pair.stuck = 1;
   const std::size_t whole = made.pairs.size();
   BroadPhase broad;
   broad.reserve(state.nodes(), 1'000'000);
@@ -184,7 +184,10 @@ TEST(Growth, AListThatCannotBeAffordedKeepsTheImpulses) {
     if (!broad.build(state, made.motion, outlook, allowance, work, list)) broad.put_back(list);
   }
   ASSERT_EQ(made.pairs.size(), whole);
-  for (const auto& pair : made.pairs) EXPECT_EQ(pair.impulse[0], 1.0 + pair.a) << pair.a << ' ' << pair.b;
+  for (const auto& pair : made.pairs) {
+    EXPECT_EQ(pair.impulse[0], 1.0 + pair.a) << pair.a << ' ' << pair.b;
+    EXPECT_EQ(pair.stuck, 1) << pair.a << ' ' << pair.b;
+  }
 }
 
 }  // namespace

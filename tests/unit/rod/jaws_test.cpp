@@ -121,6 +121,36 @@ TEST(Jaws, SlipAtCoulombsLimit) {
   EXPECT_GT(sim.hand(Hand::kLeft).node, 31);  // it has slipped by about 13 mm, two and a half segments
 }
 
+/// The same in the other direction: the lower end is held, and the hand pulls upwards.
+TEST(Jaws, SlipAtCoulombsLimitTowardsTheFirstNodeToo) {
+  auto sim = simulation(thread(
+      {"hands.pinch_width_m=0.004", "hands.pinch_force_N=1.0", "world.fixed=[{node=60, position_m=[0,0,-0.3]}]"}));
+  auto tools = hands_at(sim.nodes_W()[30], Vec3(1, 1, 1));
+  tools[0].grip = true;
+  for (int k = 0; k < 800; ++k) {
+    tools[0].v_WT = Vec3(0, 0, 0.02);
+    tools[0].p_WT.z() += 2e-5;
+    sim.tick(tools);
+  }
+  EXPECT_NEAR(sim.hand(Hand::kLeft).f_W.z(), -0.6, 0.012);
+  EXPECT_LT(sim.hand(Hand::kLeft).node, 29);
+}
+
+TEST(Jaws, LetGoOfAThreadThatHasSlippedOut) {  // 10 mm of thread are left below the jaws
+  auto sim = simulation(thread({"hands.pinch_width_m=0.004", "hands.pinch_force_N=1.0"}));
+  auto tools = hands_at(sim.nodes_W()[58], Vec3(1, 1, 1));
+  tools[0].grip = true;
+  sim.tick(tools);
+  ASSERT_EQ(sim.hand(Hand::kLeft).node, 58);
+  for (int k = 0; k < 500; ++k) {
+    tools[0].v_WT = Vec3(0, 0, -0.05);
+    tools[0].p_WT.z() -= 5e-5;
+    sim.tick(tools);
+  }
+  EXPECT_EQ(sim.hand(Hand::kLeft).node, -1);
+  EXPECT_EQ(sim.hand(Hand::kLeft).f_W, Vec3(0, 0, 0));
+}
+
 /// The right hand has turned the thread about its axis. The twist above the left hand's jaws must stay while the thread
 /// slides through them.
 TEST(Jaws, KeepTheRollWhateverNodesTheyHold) {

@@ -100,5 +100,26 @@ TEST(Remesh, KeepsMomentumAndLength) {  // to rounding, in every remesh of a mov
   EXPECT_GT(remeshes, 20);
 }
 
+TEST(Remesh, KeepsTheLoads) {  // a node that carries a load stays
+  Material m;
+  m.length_m = 0.235;
+  Numerics numerics;
+  numerics.tick_s = 1e-4;
+  numerics.substeps = numerics.max_substeps = 4;
+  Rod rod(m, numerics, Parts{false, true, true, false, true}, 99);
+  helix_around_a_strand(rod, 0.3, 1.3e-3);
+  rod.hold_mesh(true);
+  int loads = 0, remeshes = 0;
+  for (std::size_t i = 1; i + 1 < rod.state().load.size(); i += 3, ++loads) rod.state().load[i] = make(0, 0, -1e-9);
+  for (int i = 0; i < 200; ++i) {
+    rod.tick();
+    remeshes += rod.remesh();
+    double sum_N = 0.0;
+    for (const Vec& load : rod.state().load) sum_N += load[2];
+    ASSERT_NEAR(sum_N, -1e-9 * loads, 1e-18) << i;
+  }
+  EXPECT_GT(remeshes, 10);
+}
+
 }  // namespace
 }  // namespace ligature::test

@@ -47,6 +47,18 @@ TEST(RestCurvature, AFreeThreadRelaxesToACircularArc) {
   }
 }
 
+// The caller may move the thread any number of times before it begins, as a scene with fixed nodes does.
+TEST(RestCurvature, CountsOnceHoweverOftenTheThreadIsMoved) {
+  Material m = nylon(0.06);
+  m.born_curvature_per_m = 50.0;
+  Rod rod(m, Numerics{}, kRolling, 30);
+  const auto once = rod.state().rest_bend;
+  ASSERT_GT(norm(once[15]), 0.09);  // 50/m x 0.06 m / 29
+  rod.moved();
+  rod.moved();
+  for (std::size_t i = 0; i < once.size(); ++i) EXPECT_LT(norm(rod.state().rest_bend[i] - once[i]), 1e-15) << i;
+}
+
 // Rest curvature k about an axis that rotates by t per length gives a helix of radius k / (k^2 + t^2).
 TEST(RestCurvature, WithARestTwistAFreeThreadRelaxesToAHelix) {
   Material m = nylon(0.06);

@@ -100,23 +100,20 @@ TEST(Energy, NeverRisesWhileNobodyPulls) {
 // Two throws jam and use up the budget. The energy would rise by up to 3 % in a tick if the contact tolerance grew with
 // the free end's speed, or if a remesh restored bending energy that an earlier one had smoothed away. A small rise is
 // tolerated: when Newton's method fails in a jam and sweeps take over, overlaps grow by 1e-4 d. At 0.17 to 0.245 m/s
-// the energy rose in 18 of 64 releases (95 % interval 18 to 41 %), by up to 2.3 uJ. With this share, three or four of
-// the four releases below would rise with a probability of 7 %, so two are allowed.
+// the energy rose in 18 of 64 releases (95 % interval 18 to 41 %), by up to 2.3 uJ. With such a share any number of the
+// four releases below may rise, so only the size of a rise is bounded.
 TEST(Energy, NeverRisesWhileNobodyPullsTwoThrows) {
-  int rises = 0;
   for (const char* scene : {"suture-3-0-square.toml", "suture-3-0-surgeons.toml"}) {
     for (const bool sudden : {true, false}) {
       const Released r = release(scene, 0.2, sudden);
       const std::string name = std::string(scene) + (sudden ? " sudden" : " gentle");
       EXPECT_LT(r.rise_J, 4e-6) << name;
-      rises += r.rise_J > 1e-8;
       EXPECT_LT(r.end_J, 0.95 * r.start_J) << name;
       EXPECT_GT(r.give_J, 1e-7) << name;
       EXPECT_LT(r.overlap_d, 0.06) << name;
       EXPECT_LT(r.lost, 0.15) << name;
     }
   }
-  EXPECT_LE(rises, 2);
 }
 
 // Force on the hands while the strands slide over each other. When contact was computed between chords, whose normal
