@@ -9,16 +9,18 @@
 
 namespace ligature::physics::rod {
 
-/// A simulated thread. Construct it, set its shape through state(), then call tick(). Only the constructor allocates
-/// memory, and an assignment from a rod of another size. The data are in three structs, which a copy treats differently
-/// (rod_memory.hpp): it copies RodKept, starts with an empty RodNow, and computes RodCache again. Without contact, a
-/// copy continues exactly as its original, to the bit. With contact, the list of pairs and the contact matrices are
-/// computed again, which changes rounding (Copy.* in copies_test.cpp). They are not copied, because they are large and
-/// reset() copies within the real-time loop.
+/// A simulated thread. Construct it, set its shape through state(), then call tick(). Only the constructor and spread()
+/// allocate memory, and an assignment from a rod of another size. The data are in three structs, which a copy treats
+/// differently (rod_memory.hpp): it copies RodKept, starts with an empty RodNow, and computes RodCache again. Without
+/// contact, a copy continues exactly as its original, to the bit. With contact, the list of pairs and the contact
+/// matrices are computed again, which changes rounding (Copy.* in copies_test.cpp). They are not copied, because they
+/// are large and reset() copies within the real-time loop.
 class Rod : private RodKept, private RodNow, private RodCache {
  public:
-  /// The thread is straight along +x from the origin, at rest, with equally spaced nodes.
-  /// @param n  number of nodes, >= 3
+  /// The thread is straight along +x from the origin, at rest, with equally spaced nodes. With Parts::adaptive the
+  /// material coordinates state().mesh.s are not equally spaced: set the positions from them. They stay equally spaced,
+  /// as without adaptive, if n is below length / 16 d or above length / d (d: diameter).
+  /// @param n  number of nodes, >= 3  @param bodies  the largest number of bodies that will ever be added
   Rod(const Material& material, const Numerics& numerics, const Parts& parts, int n, int bodies = 0);
 
   Rod(const Rod& other);
@@ -58,12 +60,13 @@ class Rod : private RodKept, private RodNow, private RodCache {
   void moved() noexcept;
 
   /// Takes over the motion, holds and twist of another rod, but keeps its own material and surroundings. No allocation.
+  /// If only this rod has Parts::frames(), call moved() afterwards.
   /// @return false if the numbers of nodes or Parts::adaptive differ; then nothing is changed.
   [[nodiscard]] bool continue_from(const Rod& other) noexcept;
 
   /// Three ways to hold a node. Each returns the index of the hold, or -1 if all kMaxHolds holds are in use.
   /// - support: fixes the position p, m.
-  /// - clamp: also fixes the tangent along `direction`, and the roll.
+  /// - clamp: also fixes the tangent along `direction`, and the roll. Acts as moved(): call it before the first tick.
   /// - grip: a hand's spring K and damper B, with the force K (tool - x) + B (v_tool - v) on the node (x, v: its
   /// position and velocity), integrated implicitly. It also fixes the present roll (holds_roll) and the present tangent
   /// (directed).
@@ -86,10 +89,11 @@ class Rod : private RodKept, private RodNow, private RodCache {
   /// so that later ticks can reserve it.
   void tick_ended() noexcept { work_.time().end(); }
 
-  /// Does only the remeshing of a tick. @return true if nodes moved along the thread.
+  /// Does only the remeshing of a tick, with the work that the last tick left. O(n). @return true if nodes moved along
+  /// the thread.
   bool remesh() noexcept;
-  /// Turns a hold that fixes roll. From the next tick on, the hold's director points along `steer` and, if the hold is
-  /// directed, its tangent along `direction`.
+  /// Turns a hold that fixes roll. @pre `direction` is a unit vector. From the next tick on, the hold's director points
+  /// along `steer` and, if the hold is directed, its tangent along `direction`.
   void steer(int hold, Vec steer, Vec direction) noexcept;
   /// Switches remeshing inside tick() off (true) or on (false), for callers that call remesh() themselves.
   void hold_mesh(bool on) noexcept { mesh_held_ = on; }

@@ -5,7 +5,7 @@
 
 namespace ligature::physics::rod {
 
-/// Counters and measures of one tick.
+/// Counters and measures of one tick. passes: sweeps and Newton steps. contacts: of the last substep, loaded or not.
 struct TickReport {
   int substeps = 0, passes = 0, contacts = 0, guard_events = 0, broad_phases = 0, remeshes = 0;
   double min_gap_m = 1e9;  ///< smallest thread-thread gap in any substep; negative: overlap

@@ -41,8 +41,8 @@ struct Tuning {
   /// A thread at rest on a desk creeps at 0.07 um/s with this bound, and at 0.65 without it. Test:
   /// Friction.AThreadAtRestHardlyCreeps
   double creep = 0.1;
-  /// Leniency, a factor on the tolerance: its largest value, its growth after a tick that was cut short, its decay
-  /// after any other. Test: Plan.ToleranceGrows*
+  /// Leniency, a factor on the part of the tolerance that depends on speed: its largest value, its growth after a tick
+  /// that was cut short, its decay after any other. Test: Plan.ToleranceGrows*
   double most_leniency = 6.0, leniency_up = 1.5, leniency_down = 0.9;
   /// Newton's method ends at a residual of newton_near times the tolerance that the sweeps have. newton_near^3 times
   /// the tolerance is enough at a check after the first, when the matrix may be old. Once the fair share of the work is
@@ -75,10 +75,12 @@ struct Tuning {
   /// Fewest passes of the sweeps in a substep: at most so many contact rows are solved that the budget suffices for
   /// them. Test: Work.*
   int least_passes = 3;
-  /// The brake scales velocities down if the last pass changed one by more than this, m/s. An overlap may then deepen
+  /// The brake scales velocities down if sweeps did not converge and the last pass changed one by more than this, m/s.
+  /// (In a thread that is alone also if it changed them by less.) An overlap may then deepen
   /// no faster (at ten times the speed a jammed square knot lost half of its tension). Test: Unsettled.*
   double wild_m_per_s = 1e-3;
-  /// Work for the passes of a substep, in equal shares of what the tick has left. Test: Labour.FindsTime*
+  /// Passes may use pass_share x spare / (later substeps + 2); spare: the work that is not reserved for later substeps.
+  /// Test: Labour.FindsTime*
   double pass_share = 2.0;
 
   // ---- Mesh ----
@@ -88,17 +90,20 @@ struct Tuning {
   /// Wanted length of segments at a contact, in units of sqrt(EI / T) (EI bending stiffness, T tension), and how much
   /// the wanted length grows per length along the thread. Test: FineZone.*
   double bend_length = 0.4, grading = 0.2;
-  /// Offsets that remeshing leaves (refine.hpp) shrink in each tick by the factor fade exp(-(m / away)^2), where m is
-  /// the motion of the node in the tick, in lengths of the shortest segment. Test: FineZone.MovesWithoutAForceStep
+  /// Offsets that remeshing leaves (refine.hpp) shrink in each tick by the factor fade, and those of bends and of the
+  /// smooth curve also by exp(-(m / away)^2); m: motion of the node in the tick, in lengths of the shortest segment.
+  /// Test: FineZone.MovesWithoutAForceStep
   double fade = 0.8, away = 0.5;
   /// Share of the energy that a tick has dissipated which this fading may give back to a thread that is alone
   /// (glossary). Energy rose in 6 of 12 releases of two throws with 1, in 2 with 1/2. Test: Energy.NeverRises*
   double fade_share = 0.5;
-  /// Slip below which a contact is at rest, m/s: its segments are then made equally long; wanted length of a segment at
-  /// rest against one of unit length, in units. With 1 in place of 0.7, 12 of 32 tightened surgeon's knots had a
-  /// segment of more than 1.2 d in contact, with 0.7 one had. Test: FineZone.ReachesTheLoopThatTouches
+  /// Slip below which a contact is at rest, m/s: its segments are then made equally long. first: wanted length, in
+  /// units, of both segments of such a contact if one of them should be a unit long. With 1 in place of 0.7, 12 of 32
+  /// tightened surgeon's knots had a segment of more than 1.2 d in contact, with 0.7 one had. Test:
+  /// FineZone.ReachesTheLoopThatTouches
   double rests_m_per_s = 1e-3, first = 0.7;
-  /// Least factor by which a change improves the worst ratio; most changes that are tried in a tick. Test: Remesh.*
+  /// worth: a segment is split only if its ratio of length to wanted length is more than `worth` times that of the
+  /// merged segment. changes: most changes that are tried in a tick. Test: Remesh.*
   double worth = 1.5;
   int changes = 6;
 };

@@ -1,6 +1,6 @@
 #pragma once
-// The contact budget of a tick, in instructions. Work is charged before it is done, so the budget is kept in any state
-// of the thread.
+// The contact budget of a tick, in instructions. It is checked before each piece of work, so it is kept in any state of
+// the thread.
 
 #include <algorithm>
 

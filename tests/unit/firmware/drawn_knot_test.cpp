@@ -64,7 +64,7 @@ TEST(DrawnKnot, StaysTheKnotThatItWasAndEndsTaut) {
   EXPECT_GT(stretch, 0.07);
   EXPECT_GT(drawn.ticks, 100);
   EXPECT_LT(drawn.ticks, 1000);
-  EXPECT_EQ(drawn.pull_lost, 0.0);
+  EXPECT_LT(drawn.pull_lost, 0.005);  // of the time: 0.13 % with clang 19, 0 with GCC 12
 }
 
 }  // namespace

@@ -36,13 +36,13 @@ struct Effort {
   int passes = 0;                ///< most passes
   long work = 0;                 ///< most work for all passes, in instructions (work.hpp); one pass is always done
   double settled_m_per_s = 0.0;  ///< tolerance: a pass that changes no velocity by more is the last
-  double enough_m_per_s = 0.0;   ///< looser tolerance of Newton's method, once it has used more work than `fair`
+  double enough_m_per_s = 0.0;   ///< newton_near times this ends Newton's method once it used more work than `fair`
   long fair = 0;                 ///< work per substep if the rest of the tick's work is shared out equally
 };
 
 /// Result of Newton's method in a substep (ContactSet::settle_directly()).
 enum class Outcome : std::uint8_t {
-  kSettled,   ///< converged
+  kSettled,   ///< converged, or accepted with the looser tolerance (not counted as cut short)
   kLater,     ///< work or time ran out: repeating the substep continues from the impulses found so far
   kUnsolved,  ///< system too large for Newton's method, or no convergence: use the sweep solver
 };
@@ -122,11 +122,11 @@ class ContactWork {
 ///
 /// Conditions of a contact. u: relative velocity, p: impulse, u_n, p_n: their parts along the normal, u_t, p_t: their
 /// parts across it, dt: time step, mu: friction coefficient, beta: share of an overlap that a step removes.
-///   while apart:        u_n >= -gap / dt
-///   while overlapping:  u_n >= min(-beta gap / dt, limit)
-///   always:             u_t = 0 unless |p_t| = mu p_n
+///   p_n >= 0 and u_n + c p_n >= target, one of them an equality:  c = beta / (k dt^2), k: stiffness of the contact,
+///   target = -gap / dt while apart, -beta gap / dt while overlapping
+///   u_t = 0 unless |p_t| = mu p_n
 /// This is exact Coulomb friction, without a slip tolerance. With a separate static coefficient (let_stick()), mu is
-/// the static one as long as the contact did not slide in the last substep.
+/// the static one as long as the contact slid by less than tuning.settled_m_per_s in the last substep.
 ///
 /// settle() starts from the impulses of the last substep. Each pass is one projected Gauss-Seidel sweep with the
 /// simplified matrix C (contact_metric.hpp); then the change of p is applied with the full matrix A. C lacks the

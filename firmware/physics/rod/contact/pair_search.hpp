@@ -59,7 +59,7 @@ struct Outlook {
 /// Pairs less than 0.6 diameters apart along the thread are left out: they can cross only if the thread folds. Pairs
 /// that are an arc a < pi d / 2 apart along the thread touch at the distance d sin(a / d), the smallest that a bent
 /// tube of constant thickness allows. On a straight thread the gap of such a pair is a - d sin(a / d). It becomes a
-/// contact when its gap falls below 2/3 of that, or below near_m if near_m is smaller.
+/// contact when its gap falls below half of that, or below near_m if near_m is smaller.
 class BroadPhase {
  public:
   static constexpr double kLeastArc = 0.6;     ///< smallest distance along the thread of a listed pair, in diameters

@@ -13,12 +13,12 @@
 namespace ligature::physics::rod {
 
 /// A dyadic mesh: every segment has the length unit x 2^k, 0 <= k <= kLevels, where unit is about a diameter. The
-/// wanted length of a segment is at least a unit, and otherwise the smallest of
+/// wanted length of a segment is at least a unit (at a contact at rest 0.7 units), and otherwise the smallest of
 ///   0.35 / curvature,
 ///   0.4 sqrt(EI / T) at a contact: the length over which a pulled thread bends (EI: bending stiffness, T: the
 ///       larger of contact force and tension),
 ///   the wanted length at another place + 0.2 x the distance to that place (grading),
-///   the wanted length of the segment that it touches, if the contact is at rest; twice that while it slides slowly.
+///   the wanted length of the segment that it touches, if the contact is at rest; 0.7 units if that is a unit.
 /// Each change splits the segment that is longest relative to its wanted length, and merges the pair of segments that
 /// would be shortest relative to theirs, if this clearly improves the worst ratio. Effects on the state:
 /// - a split puts its node on the chord, so shape, gaps and stretch stay the same;
@@ -27,7 +27,7 @@ namespace ligature::physics::rod {
 /// - a merge is refused if something is so near that the segments could touch or cross it on the way to their chord
 ///   (merge_is_clear());
 /// - bending moments and tensions are kept: the difference that the new polygon makes is stored as a stress-free offset
-///   (State::rest_bend, rest_strain). The offsets fade within some ticks, faster where the thread moves.
+///   (State::rest_bend, rest_strain). The offsets fade within some ticks; those of bends faster where the thread moves.
 class Refine {
  public:
   /// Makes the initial mesh of n nodes: starts with the coarsest segments, and halves the longest one until there are n

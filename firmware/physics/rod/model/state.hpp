@@ -18,7 +18,7 @@ struct Hold {
   bool holds_roll = false;                                  ///< fixes the thread's rotation about its axis
   double stiffness_N_per_m = 0.0, damping_N_s_per_m = 0.0;  ///< of a hand's coupling
   Vec target{}, velocity{};  ///< position of the holder at the end of the substep, m, and its velocity, m/s
-  Vec force{};               ///< on the holder, N, in the last substep
+  Vec force{};               ///< on the holder, N, in the last substep; 0 if rigid
   Vec direction{};           ///< if directed: the imposed unit tangent
   Vec director{};            ///< if holds_roll: unit normal fixed to the thread's material here
   Vec tangent{};             ///< unit tangent to which the director is perpendicular
