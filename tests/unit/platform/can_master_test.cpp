@@ -63,7 +63,7 @@ TEST_F(CanMasterTest, WritesTheWholePlanToEveryDrive) {
 
 TEST_F(CanMasterTest, ASilentDriveIsNamed) {
   silent = can::kShoulder;
-  EXPECT_EQ(configure(), "node 2, object 0x6076:00: no answer");
+  EXPECT_EQ(configure(), "node 2, object 0x6076:00: no answer; remedy: check its power, node id, bit rate and cable");
   EXPECT_GE(wait.time, std::chrono::milliseconds(500));
 }
 

@@ -172,7 +172,7 @@ void ContactNewton::set_steps(Slot& slot, const std::array<Four, 3>& w) noexcept
 // have their blocks. false: the time was over first; the next call continues with the slot where this one ended.
 bool ContactNewton::couple(TickTime& time) noexcept {
   if (coupled_ == slots_.size()) return true;
-  if (!z_.make_missing(time)) return false;
+  if (!z_.make_missing(time) || !time.allows()) return false;
   Pieces pieces(time);
   std::int32_t first = z_.width(), last = 0;
   for (const auto& slot : slots_) {
