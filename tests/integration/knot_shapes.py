@@ -122,9 +122,12 @@ def disguised(points, rng, moves, reach):
         to = b + reach * rng.normal(size=3)
         keep = [k for k in range(n) if k not in ((i - 1) % n, i)]
         starts, ends = p[keep], p[[(k + 1) % n for k in keep]]
-        # An edge beside a moved one shares a corner with a triangle. Apart from this corner it must not intersect it, so
-        # all edges are tested a little shortened.
-        starts, ends = starts + 1e-6 * (ends - starts), ends + 1e-6 * (starts - ends)
+        # The two edges beside the moved ones share a corner with a triangle. Apart from this corner they must not
+        # intersect it, so they are tested a little shortened there. All others are tested whole: two shortened edges
+        # leave a gap at their common corner, through which a triangle's side can pass.
+        before, after = keep.index((i - 2) % n), keep.index((i + 1) % n)
+        ends[before] += 1e-6 * (starts[before] - ends[before])
+        starts[after] += 1e-6 * (ends[after] - starts[after])
         if pierced(a, b, to, starts, ends) or pierced(b, c, to, starts, ends):
             continue
         p[i] = to
