@@ -71,7 +71,9 @@ std::variant<Options, int> parse(int argc, char** argv) {
       ->required();
   auto* const haply = app.add_option("--haply", o.haply, "Haply's Inverse Service: ws://HOST:PORT, usually port 10001");
   app.add_option("--id", o.choice.inverse3_id, "device_id of the Inverse3; without it the first one")->needs(haply);
-  app.add_option("--grip-id", o.choice.grip_id, "device_id of the VerseGrip; without it the only one. With several, none is used")->needs(haply);
+  app.add_option("--grip-id", o.choice.grip_id,
+                 "device_id of the VerseGrip; without it the only one. With several, none is used")
+      ->needs(haply);
   app.add_option("--dead-man-button", o.choice.dead_man, "Button of the VerseGrip")
       ->needs(haply)
       ->capture_default_str();

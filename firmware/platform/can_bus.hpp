@@ -9,6 +9,10 @@ namespace ligature::platform {
 
 enum class Receive : std::uint8_t { kFrame, kNothing, kLost };
 
+/// Why start-up ended: frames could not be queued.
+inline constexpr const char* kTakesNoFrames =
+    "the bus takes no frames (down, or bus-off); remedy: ligature-firmware doctor --can INTERFACE";
+
 /// Never blocks or throws. A lost bus accepts no frames; if it can recover, it does so while send() or receive()
 /// is called.
 class CanBus {

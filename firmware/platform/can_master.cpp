@@ -141,7 +141,7 @@ SdoAnswer transfer(CanBus& bus, BusWait& wait, const can::Frame& request, Nanose
 
 std::optional<std::string> configure_drives(CanBus& bus, BusWait& wait, const can::StartupTimes& times,
                                             std::vector<std::string>* lacks, Nanoseconds patience) {
-  if (!bus.send(can::encode_nmt(can::NmtCommand::kEnterPreOperational))) return "the bus takes no frames (down, or bus-off); remedy: ligature-firmware doctor --can INTERFACE";
+  if (!bus.send(can::encode_nmt(can::NmtCommand::kEnterPreOperational))) return kTakesNoFrames;
   for (const can::NodeId node : can::profile::kJointNodes) {
     if (auto error = Setup(bus, wait, node, times, patience, lacks).run()) return error;
   }

@@ -102,7 +102,7 @@ bool OdriveDrives::wait_until(BusWait& wait, Nanoseconds at_most, const Traffic&
 
 std::optional<std::string> OdriveDrives::bus_complaint() const {
   if (link_.foreign() != rt::Foreign::kNone) return told_of(link_.foreign());
-  if (bus_.is_lost() || link_.has_refused()) return "the bus takes no frames (down, or bus-off); remedy: ligature-firmware doctor --can INTERFACE";
+  if (bus_.is_lost() || link_.has_refused()) return kTakesNoFrames;
   return std::nullopt;
 }
 

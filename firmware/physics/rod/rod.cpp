@@ -77,8 +77,16 @@ Rod& Rod::operator=(const Rod& other) {
 bool Rod::continue_from(const Rod& other) noexcept {
   if (state_.nodes() != other.state_.nodes() || parts_.adaptive != other.parts_.adaptive) return false;
   RodCourse::operator=(other);
-  if (parts_.frames() && other.parts_.frames()) spin_ = other.spin_;
   mesh_changed();
+  if (parts_.frames() && other.parts_.frames()) {
+    spin_ = other.spin_;
+  } else if (parts_.frames()) {
+    spin_.forget_born();
+    spin_.start(material_, state_);
+  } else if (other.parts_.frames()) {
+    const auto born = other.spin_.born();
+    for (std::size_t i = 0; i < born.size(); ++i) state_.rest_bend[i] -= born[i];
+  }
   return true;
 }
 

@@ -60,7 +60,7 @@ class Rod : private RodKept, private RodNow, private RodCache {
   void moved() noexcept;
 
   /// Takes over the motion, holds and twist of another rod, but keeps its own material and surroundings. No allocation.
-  /// If only this rod has Parts::frames(), call moved() afterwards.
+  /// Bends that are permanent, and the roll, are lost if only one of the two has Parts::frames().
   /// @return false if the numbers of nodes or Parts::adaptive differ; then nothing is changed.
   [[nodiscard]] bool continue_from(const Rod& other) noexcept;
 

@@ -44,7 +44,7 @@ struct World {
 };
 
 /// The thread's motion, and the state of the rules that adapt the work to the computing time. Rod::continue_from()
-/// takes over this, and Spin if both rods have frames.
+/// takes over this, and spin_ if both rods have frames.
 struct RodCourse {
   State state_;
   Forces forces_;
@@ -63,7 +63,7 @@ struct RodCourse {
                    kept_J, give_J)
 };
 
-/// What a copy takes over in addition, but Rod::continue_from() does not (except spin_).
+/// What a copy takes over in addition.
 struct RodMatter {
   Material material_;
   Numerics numerics_;

@@ -5,7 +5,8 @@
 
 namespace ligature::physics::rod {
 
-/// Counters and measures of one tick. passes: sweeps and Newton steps. contacts: of the last substep, loaded or not.
+/// Counters and measures of one tick. `passes` counts sweeps and Newton steps; `contacts` are those of the last
+/// substep, with and without load.
 struct TickReport {
   int substeps = 0, passes = 0, contacts = 0, guard_events = 0, broad_phases = 0, remeshes = 0;
   double min_gap_m = 1e9;  ///< smallest thread-thread gap in any substep; negative: overlap

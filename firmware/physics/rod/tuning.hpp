@@ -76,8 +76,8 @@ struct Tuning {
   /// them. Test: Work.*
   int least_passes = 3;
   /// The brake scales velocities down if sweeps did not converge and the last pass changed one by more than this, m/s.
-  /// (In a thread that is alone also if it changed them by less.) An overlap may then deepen
-  /// no faster (at ten times the speed a jammed square knot lost half of its tension). Test: Unsettled.*
+  /// (In a thread that is alone also if it changed them by less.) An overlap may then deepen no faster (at ten times
+  /// the speed a jammed square knot lost half of its tension). Test: Unsettled.*
   double wild_m_per_s = 1e-3;
   /// Passes may use pass_share x spare / (later substeps + 2); spare: the work that is not reserved for later substeps.
   /// Test: Labour.FindsTime*

@@ -73,9 +73,9 @@ TEST(VirtualCoupling, TwoSidesAreSpringsInSeries) {
   EXPECT_NEAR(felt(two_sided(), {true, Vec3(0, 0, 0.1), Vec3::Zero()}).z(), 24.0 * 0.005, 1e-9);
 }
 
-// Both sides damp: 2 m/s in the world are 0.1 m/s at the device, whose damper of 0.5 N s/m carries what the 0.36 N s/m
-// (6 x 0.003 x 20) of the other side carry. At rest against a node, the proxy's speed is 0 in the steady state, so the
-// device's side alone gives the force.
+// The tool is held in place but told to move at 2 m/s, which is 0.1 m/s at the device. In the steady state the proxy
+// rests where both sides' forces are equal, F = -B v + K_d x = -K_t x. With B = 0.5 N s/m, K_d = 36 and K_t = 72 N/m
+// that is F = -B v K_t / (K_d + K_t) = -0.1 / 3 N.
 TEST(VirtualCoupling, TheDevicesSideDampsTheHandsMotion) {
   scene::Hands h = two_sided();
   h.device_N_s_per_m = 0.5;

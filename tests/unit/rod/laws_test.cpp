@@ -90,8 +90,7 @@ TEST(StaticFriction, DoesNotCatchWhatSlidesSlowly) {
   EXPECT_NEAR(rod.state().v[15][1], kSlow_m_per_s + 0.1 * a, 0.5 * kSlow_m_per_s);
 }
 
-// At 5 m/s a thread that is 2.9 mm above a bar reaches it in a third of a tick. The bar must be looked at again by
-// then.
+// At 5 m/s a thread that is 2.9 mm above a bar reaches it in 0.6 of a tick. The bar must be looked at again by then.
 TEST(World, AFastThreadDoesNotPassThroughABar) {
   Material m;
   m.length_m = 0.03;

@@ -72,15 +72,23 @@ Vec momentum(const State& state) {
   return sum;
 }
 
-TEST(Remesh, KeepsMomentumAndLength) {  // to rounding, in every remesh of a moving thread
+constexpr double kHelix_m = 0.235;
+
+/// A helix around a strand, which is remeshed in most ticks.
+Rod remeshed_helix() {
   Material m;
-  m.length_m = 0.235;
+  m.length_m = kHelix_m;
   Numerics numerics;
   numerics.tick_s = 1e-4;
   numerics.substeps = numerics.max_substeps = 4;
   Rod rod(m, numerics, Parts{false, true, true, false, true}, 99);
   helix_around_a_strand(rod, 0.3, 1.3e-3);
   rod.hold_mesh(true);
+  return rod;
+}
+
+TEST(Remesh, KeepsMomentumAndLength) {  // to rounding, in every remesh of a moving thread
+  Rod rod = remeshed_helix();
   for (auto& v : rod.state().v) v = make(0.3, -0.2, 0.1);
   int remeshes = 0;
   for (int i = 0; i < 200; ++i) {
@@ -90,25 +98,18 @@ TEST(Remesh, KeepsMomentumAndLength) {  // to rounding, in every remesh of a mov
     ++remeshes;
     EXPECT_LT(norm(momentum(rod.state()) - before), 1e-12 * norm(before));
     EXPECT_EQ(rod.state().mesh.s.front(), 0.0);
-    EXPECT_NEAR(rod.state().mesh.s.back(), m.length_m, 1e-15);
+    EXPECT_NEAR(rod.state().mesh.s.back(), kHelix_m, 1e-15);
     double length = 0.0, mass = 0.0;
     for (std::size_t j = 0; j + 1 < rod.state().x.size(); ++j) length += rod.state().mesh.rest[j];
     for (const double k : rod.state().mesh.mass) mass += k;
-    EXPECT_NEAR(length, m.length_m, 1e-14);
-    EXPECT_NEAR(mass, m.length_m * m.density_kg_per_m, 1e-17);
+    EXPECT_NEAR(length, kHelix_m, 1e-14);
+    EXPECT_NEAR(mass, kHelix_m * rod.material().density_kg_per_m, 1e-17);
   }
   EXPECT_GT(remeshes, 20);
 }
 
 TEST(Remesh, KeepsTheLoads) {  // a node that carries a load stays
-  Material m;
-  m.length_m = 0.235;
-  Numerics numerics;
-  numerics.tick_s = 1e-4;
-  numerics.substeps = numerics.max_substeps = 4;
-  Rod rod(m, numerics, Parts{false, true, true, false, true}, 99);
-  helix_around_a_strand(rod, 0.3, 1.3e-3);
-  rod.hold_mesh(true);
+  Rod rod = remeshed_helix();
   int loads = 0, remeshes = 0;
   for (std::size_t i = 1; i + 1 < rod.state().load.size(); i += 3, ++loads) rod.state().load[i] = make(0, 0, -1e-9);
   for (int i = 0; i < 200; ++i) {

@@ -59,6 +59,22 @@ TEST(RestCurvature, CountsOnceHoweverOftenTheThreadIsMoved) {
   for (std::size_t i = 0; i < once.size(); ++i) EXPECT_LT(norm(rod.state().rest_bend[i] - once[i]), 1e-15) << i;
 }
 
+// As a live change of a scene's parameter does: a thread that has run without rest curvature gets one, and loses it.
+TEST(RestCurvature, CountsWhenItIsSetInARunningThread) {
+  Material m = nylon(0.06);
+  Rod straight(m, Numerics{}, Parts{.twist = true, .contact = false, .friction = false}, 30);
+  straight.tick();
+  m.born_curvature_per_m = 50.0;
+  Rod curved(m, Numerics{}, kRolling, 30);
+  const auto born = curved.state().rest_bend;
+  ASSERT_TRUE(curved.continue_from(straight));
+  for (std::size_t i = 0; i < born.size(); ++i)
+    EXPECT_NEAR(norm(curved.state().rest_bend[i]), norm(born[i]), 1e-12) << i;
+  curved.tick();
+  ASSERT_TRUE(straight.continue_from(curved));
+  for (const Vec& bend : straight.state().rest_bend) EXPECT_LT(norm(bend), 1e-12);
+}
+
 // Rest curvature k about an axis that rotates by t per length gives a helix of radius k / (k^2 + t^2).
 TEST(RestCurvature, WithARestTwistAFreeThreadRelaxesToAHelix) {
   Material m = nylon(0.06);

@@ -13,12 +13,13 @@
 namespace ligature::physics::rod {
 
 /// A dyadic mesh: every segment has the length unit x 2^k, 0 <= k <= kLevels, where unit is about a diameter. The
-/// wanted length of a segment is at least a unit (at a contact at rest 0.7 units), and otherwise the smallest of
+/// wanted length of a segment is at least a unit, and otherwise the smallest of
 ///   0.35 / curvature,
 ///   0.4 sqrt(EI / T) at a contact: the length over which a pulled thread bends (EI: bending stiffness, T: the
 ///       larger of contact force and tension),
 ///   the wanted length at another place + 0.2 x the distance to that place (grading),
-///   the wanted length of the segment that it touches, if the contact is at rest; 0.7 units if that is a unit.
+///   the wanted length of the segment that it touches, if the contact is at rest. If that is a unit, both get 0.7
+///       units: no segment becomes so short, but these are split before others.
 /// Each change splits the segment that is longest relative to its wanted length, and merges the pair of segments that
 /// would be shortest relative to theirs, if this clearly improves the worst ratio. Effects on the state:
 /// - a split puts its node on the chord, so shape, gaps and stretch stay the same;

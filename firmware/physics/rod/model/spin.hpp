@@ -32,7 +32,7 @@ class Spin {
   void reserve(int nodes);
 
   /// Sets the initial frames: at rest, and without twist along the present shape. Holds that fix roll get matching
-  /// directors.
+  /// directors. Replaces the part born() of State::rest_bend.
   void start(const Material& material, State& state) noexcept;
   /// Sets the director of a hold so that the hold causes no twist. @pre after start().
   void attach(State& state, int hold) const noexcept;
@@ -40,6 +40,8 @@ class Spin {
   /// Part of State::rest_bend that is the thread's own rest curvature. It must not fade, as the offsets of remeshing
   /// do.
   [[nodiscard]] std::span<const Vec> born() const noexcept { return born_; }
+  /// Call before start() if State::rest_bend is of a thread without frames, so that it has no such part.
+  void forget_born() noexcept { std::fill(born_.begin(), born_.end(), Vec{}); }
   /// Call before Refine::fade_offsets(), with the same factors. Scales up the part born() of State::rest_bend, so that
   /// this part has its old value after the fading.
   void before_fading(State& state, std::span<const double> fade) const noexcept;

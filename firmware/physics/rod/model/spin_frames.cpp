@@ -52,9 +52,7 @@ void Spin::start(const Material& material, State& state) noexcept {
   }
   for (int h = 0; h < state.hold_count; ++h)
     if (state.holds[static_cast<std::size_t>(h)].holds_roll) attach(state, h);
-  // State::rest_bend has the former stress-free bends, which bear() adds anew
-  for (std::size_t i = 0; i < born_.size(); ++i) state.rest_bend[i] -= born_[i];
-  for (auto* array : {&born_, &set_}) std::fill(array->begin(), array->end(), Vec{});
+  std::fill(set_.begin(), set_.end(), Vec{});
   if (material.has_shape()) bear(material, state, false);
 }
 
