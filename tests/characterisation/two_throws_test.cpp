@@ -73,8 +73,7 @@ TEST(Hold, OfTwoThrowsLosesHardlyAnyTime) {
   EXPECT_LT(mean, 0.05);
 }
 
-// A held surgeon's knot is slackened slowly, so half of its contacts change between stick, slip and open. Newton's
-// steps cycle if their proximal term (contact_newton.hpp) is dropped as soon as no contact changes its kind.
+// A held surgeon's knot is slackened slowly, so half of its contacts change between stick, slip and open.
 TEST(Hold, OfTwoThrowsIsSlackenedInTime) {
   double lost = 0.0;
   int ticks = 0;

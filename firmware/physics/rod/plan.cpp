@@ -6,6 +6,7 @@ namespace ligature::physics::rod {
 
 Plan plan(const Plan& last, const TickReport& report, const Situation& now, const Numerics& numerics) noexcept {
   const bool fast = numerics.is_fast(now.hand_d);
+  const bool flies = now.released || now.node_d > numerics.max_substeps;  // > a diameter in a substep
   Plan next;
   next.budget = numerics.budget(now.nodes, now.hand_d);
   const auto budget = static_cast<double>(numerics.budget(now.nodes, 0.0));
@@ -13,11 +14,10 @@ Plan plan(const Plan& last, const TickReport& report, const Situation& now, cons
   next.leniency = report.cut_short > 0 ? std::min(tuning.most_leniency, tuning.leniency_up * last.leniency)
                                        : std::max(1.0, tuning.leniency_down * last.leniency);
   next.pace_m_per_s = 0.5 * now.apart_m_per_s;
-  next.letting_go = now.released || (last.letting_go && (now.waits || now.node_d > numerics.max_substeps));
-  next.substeps = next.letting_go || fast ? numerics.max_substeps
-                  : now.waits             ? report.substeps
-                  : labours ? std::min(numerics.substeps, std::max(tuning.fewest_substeps, numerics.substeps / 2))
-                            : numerics.substeps;
+  next.substeps = fast || flies ? numerics.max_substeps
+                  : now.waits   ? report.substeps
+                  : labours     ? std::min(numerics.substeps, std::max(tuning.fewest_substeps, numerics.substeps / 2))
+                                : numerics.substeps;
   next.new_matrix = (fast && !now.waits) || next.substeps != report.substeps;
   return next;
 }

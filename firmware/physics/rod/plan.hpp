@@ -24,9 +24,8 @@ struct Plan {
   long budget = 0;            ///< of contact work, instructions
   double leniency = 1.0;      ///< 1 to 6: factor of the tolerance's speed-dependent part; grows after ticks cut short
   double pace_m_per_s = 0.0;  ///< half the relative speed of the hands
-  bool letting_go = false;    ///< a hold was released, and a node still moves by over a diameter in a substep
   bool new_matrix = false;    ///< Newton's inverse matrix of the last tick serves no more
-  LIGATURE_MEMBERS(Plan, substeps, budget, leniency, pace_m_per_s, letting_go, new_matrix)
+  LIGATURE_MEMBERS(Plan, substeps, budget, leniency, pace_m_per_s, new_matrix)
 };
 
 [[nodiscard]] Plan plan(const Plan& last, const TickReport& report, const Situation& now,

@@ -127,7 +127,7 @@ class Rod : private RodKept, private RodNow, private RodCache {
   /// floor and bodies, and contact that rolls the thread.
   [[nodiscard]] bool solves_directly() const noexcept { return !parts_.turning && contacts_.only_pairs(); }
   /// `window`: number of nodes from the first to the last on which contacts act. `rows`: work, in instructions, for
-  /// setting up contact rows with their fewest passes. `passes`: work for the rows with all their passes.
+  /// setting up contact rows with one pass. `passes`: work for the rows with all their passes.
   struct Allowance {
     long window, rows, passes;
   };

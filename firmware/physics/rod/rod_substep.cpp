@@ -78,9 +78,9 @@ bool Rod::look(double dt_s) noexcept {
 }
 
 // Work that this substep may spend on setting up its contact rows and on passes over them. For each later substep of
-// the tick, the cost of the last contact detection and of the last rows with their fewest passes are reserved; and once
-// the cost of a new list of pairs. Setting up rows may use all that is left. Passes beyond the fewest get twice an
-// equal share of what is not reserved, so that a hard substep leaves work for the next. Newton's method may use
+// the tick, the cost of the last contact detection and of the last rows with one pass are reserved; and once the cost
+// of a new list of pairs. Setting up rows may use all that is left. Of what is not reserved, passes get twice an equal
+// share, so that a hard substep leaves work for the next, and the last one may use all. Newton's method may use
 // everything, as a substep that does not converge is continued in the next tick.
 Rod::Allowance Rod::work_allowed(bool metric_too) const noexcept {
   const long after = report_.substeps - substep_index_ - 1;
@@ -90,7 +90,7 @@ Rod::Allowance Rod::work_allowed(bool metric_too) const noexcept {
   const long looks = after * look_cost_ + (after > 0 ? list_cost_ : 0);
   const long left = std::max(0L, work_.left() - metric - looks);
   const long spare = std::max(0L, left - after * rows_cost_);
-  const long for_passes = static_cast<long>(tuning.pass_share * static_cast<double>(spare)) / (after + 2);
+  const long for_passes = 2 * spare / (after + 2);
   return {window, work_.left() - metric, solves_directly() ? work_.left() - metric : for_passes};
 }
 
@@ -119,14 +119,13 @@ double Rod::settled() const noexcept {
 // when not all can be afforded and the substep is not the tick's first: it then waits for the next tick. So contacts
 // are left out only when the whole budget of a tick is too small for them.
 std::optional<Effort> Rod::choose_rows(double dt_s) noexcept {
-  const long passes = solves_directly() ? 1 : tuning.least_passes;
   const auto span = contacts_.span();
   const Allowance allowed = work_allowed(dt_s != metric_dt_ || !metric_.covers(span.first, span.last));
-  const long most = std::min<long>(price::affordable_rows(allowed.rows, allowed.window, passes), kMaxContacts);
+  const long most = std::min<long>(price::affordable_rows(allowed.rows, allowed.window), kMaxContacts);
   if (substep_index_ > 0 && most < static_cast<long>(contacts_.contacts().size())) return std::nullopt;
   contacts_.choose_rows(static_cast<int>(most), metric_.capacity() - 4, state_.nodes(), seen_);
   const long rows = contacts_.rows(), nodes = contacts_.window_last() - contacts_.window_first() + 1;
-  const long least = passes * price::pass(rows, rows, nodes);
+  const long least = price::pass(rows, rows, nodes);
   rows_cost_ = rows > 0 ? price::rows(rows, nodes) + least : 0;
   return Effort{work_.time(), numerics_.max_passes, std::max(least, allowed.passes - price::rows(rows, nodes)),
                 settled()};
@@ -255,7 +254,7 @@ std::optional<double> Rod::guard(double dt_s) noexcept {
   }
   report_.guard_events += share < 1.0;
   // Sweeps that replace an unfinished Newton solution converge slowly: their error is about 100 times the last change
-  const bool far_off = seen_.change_m_per_s > tuning.wild_m_per_s || (alone_ && patience_.sweeps_only());
+  const bool far_off = seen_.change_m_per_s > loose_m_per_s() || (alone_ && patience_.sweeps_only());
   const bool wild = seen_.cut_short && far_off;
   const double slow = wild ? brake(dt_s) : 1.0;  // braked velocities move less, so the guard shortens the step less
   report_.time_lost += (1.0 - std::min(share, slow)) / report_.substeps;

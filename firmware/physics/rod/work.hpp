@@ -63,11 +63,10 @@ inline constexpr long kChangePerNode = 180;  ///< remeshing: one merge with one 
 [[nodiscard]] constexpr long newton(long loaded, long unknowns) noexcept {
   return unknowns * (300 + 8 * unknowns + unknowns * unknowns / 14) + 1500 + 400 * loaded;
 }
-/// Largest number of contact rows whose setup and `passes` passes cost no more than `allowance`.
-[[nodiscard]] constexpr long affordable_rows(long allowance, long nodes, long passes) noexcept {
-  const long fixed = rows(0, nodes) + passes * pass(0, 0, nodes);
-  return std::max(0L, allowance - fixed) /
-         (rows(1, nodes) - rows(0, nodes) + passes * (pass(1, 1, nodes) - pass(0, 0, nodes)));
+/// Largest number of contact rows whose setup and one pass cost no more than `allowance`.
+[[nodiscard]] constexpr long affordable_rows(long allowance, long nodes) noexcept {
+  const long fixed = rows(0, nodes) + pass(0, 0, nodes);
+  return std::max(0L, allowance - fixed) / (rows(1, nodes) + pass(1, 1, nodes) - fixed);
 }
 /// Price of inverting the sweeps' simplified matrix (contact_metric.hpp) on `window` nodes of a thread with `nodes`
 /// nodes.

@@ -31,15 +31,15 @@ struct Row {
 
 TEST(Plan, SubstepsFollowTheTable) {
   const int whole = kBalanced.substeps, fewer = tuning.fewest_substeps;
-  const Plan calm, released{.letting_go = true};
+  const Plan calm;
   for (const Row& row : std::vector<Row>{
            {"nothing happened", calm, after(0.2), {}, whole},
            {"a large share of the budget was used", calm, after(0.3), {}, fewer},
            {"the clock ended the tick", calm, after(0.1, 0, 7), {}, fewer},
            {"a substep waits: it goes on with its time step", calm, after(0.95, 1, -1, 13), {.waits = true}, 13},
            {"a hand lets go", calm, after(0.95), {.released = true}, whole},
-           {"the thread still flies", released, after(0.95), {.node_d = whole + 0.1}, whole},
-           {"the thread has come down", released, after(0.95), {.node_d = whole - 0.1}, fewer},
+           {"the thread flies, as after a release", calm, after(0.95), {.node_d = whole + 0.1}, whole},
+           {"the thread has come down", calm, after(0.95), {.node_d = whole - 0.1}, fewer},
            {"a fast hand is followed, whatever it costs", calm, after(0.95), {.hand_d = 1.1}, whole},
        }) {
     Situation now = row.now;

@@ -243,7 +243,7 @@ double ContactSet::unsettled_fraction(const Vec* v, double dt_s) const noexcept 
   for (int k = 0; k < rows_; ++k) {
     const Contact& c = contacts_[static_cast<std::size_t>(k)];
     const double closing_m = -dt_s * dot(velocity<false>(k, v), c.n);
-    const double room_m = std::max(c.gap_m, tuning.wild_m_per_s * dt_s);
+    const double room_m = std::max(c.gap_m, loose_m_per_s() * dt_s);
     if (closing_m > room_m) share = std::min(share, room_m / closing_m);
   }
   return share;

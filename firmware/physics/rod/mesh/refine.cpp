@@ -148,7 +148,7 @@ void Refine::want_at_rest(const State& state, const ContactSet& contacts) noexce
     Vec u{};
     for (int k = 0; k < c.count; ++k) u += c.w[k] * state.v[static_cast<std::size_t>(c.node[k])];
     u -= dot(u, c.n) * c.n;
-    if (dot(u, u) > tuning.rests_m_per_s * tuning.rests_m_per_s) continue;
+    if (dot(u, u) > loose_m_per_s() * loose_m_per_s()) continue;
     double& one = wanted_[static_cast<std::size_t>(c.node[0])];
     double& other = wanted_[static_cast<std::size_t>(c.node[2])];
     const double least = std::max(unit_m_, std::min(one, other));
@@ -295,7 +295,7 @@ bool Refine::update(const Material& material, State& state, const Forces& forces
   const std::size_t n = at_.size();
   bool changed = false;
   const long price_of_one = price::kChangePerNode * static_cast<long>(n);
-  for (int k = 0; k < tuning.changes && work.left() >= price_of_one && work.time().allows(); ++k) {
+  while (work.left() >= price_of_one && work.time().allows()) {
     work.spend(price_of_one);
     const int segment = worst_segment();
     if (segment < 0) break;

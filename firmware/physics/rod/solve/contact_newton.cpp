@@ -49,7 +49,6 @@ bool ContactNewton::has_moved(const Slot& slot, const Contact& c, std::int32_t f
 void ContactNewton::start(const Contact* rows, int count) noexcept {
   slot_.assign(static_cast<std::size_t>(count), -1);
   rows_.clear();
-  begins_ = begins_ || !put_off_;
   index_slots();
   for (int k = 0; k < count; ++k) {
     const std::int32_t s = find(rows[k].node[0] - z_.first(), rows[k].node[2] - z_.first());
@@ -108,7 +107,6 @@ bool ContactNewton::take(const Contact* rows, int k) noexcept {
   }
   slot_[static_cast<std::size_t>(k)] = static_cast<std::int32_t>(slot);
   rows_.push_back(k);
-  begins_ = true;
   Slot& made = slots_.emplace_back();
   made.guess.v = c.p.v;
   made.row = k;

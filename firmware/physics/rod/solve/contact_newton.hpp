@@ -34,8 +34,7 @@ struct Contact;
 /// Without damping this cycles: a few kinds are wrong, and impulses to which velocities hardly respond (cond W is 1e5)
 /// become a thousand times too large, which makes all other kinds wrong. So a term proportional to the change of each
 /// impulse is added to its equation (a proximal point method [Rockafellar 1976]), which mostly damps such weak
-/// directions. The factor of this term shrinks from step to step, faster when no kind changes, and is 1 again when new
-/// contacts enter.
+/// directions. It is zero in the solution, where impulses no longer change.
 ///
 /// Z may be some substeps old: after each step the caller computes the velocities with the present A.
 class ContactNewton {
@@ -103,9 +102,9 @@ class ContactNewton {
   bool solve(const Contact* rows, Vec* p, Vec* u, TickTime& time = TickTime::endless()) noexcept;
   /// The members that an image saves (image.hpp): all but those that are computed again in every Newton step.
   [[nodiscard]] static auto members(ContactNewton& self) noexcept {
-    auto& [z, spread, slot, at, rows, slots, coupled, put_off, begins, changed, cost, w, unknowns, count, carrying,
-           dense, on, stuck, with, rest] = self;
-    return std::tie(z, slot, at, rows, slots, coupled, put_off, begins, changed, cost, w);
+    auto& [z, spread, slot, at, rows, slots, coupled, put_off, w, unknowns, count, carrying, dense, on, stuck, with,
+           rest] = self;
+    return std::tie(z, slot, at, rows, slots, coupled, put_off, w);
   }
 
  private:
@@ -182,10 +181,7 @@ class ContactNewton {
   std::vector<Slot> slots_;
   std::size_t coupled_ = 0;  // number of slots whose blocks of W are computed
   bool put_off_ = false;
-  bool begins_ = true;  // the system has contacts that no step has solved yet
-  int changed_ = 0;     // kinds changed by the last read()
-  double cost_ = 1.0;   // factor of the proximal term, 0 to 1
-  Couplings w_;         // W of all slots
+  Couplings w_;  // W of all slots
   // Unknowns of the first carrying_ slots: first those along the normals, then those across the sliding directions,
   // then (for sticking contacts only) those along the sliding directions
   std::vector<Unknown> unknowns_;

@@ -14,7 +14,7 @@ namespace ligature::physics::rod {
 template <bool Friction>
 double ContactNewton::read(const Contact* rows, const Vec* p, const Vec* u) noexcept {
   double largest2 = 0.0;
-  changed_ = count_ = 0;
+  count_ = 0;
   for (const auto k : rows_) {
     const Contact& c = rows[k];
     Slot& slot = slots_[slot_of(k)];
@@ -28,9 +28,8 @@ double ContactNewton::read(const Contact* rows, const Vec* p, const Vec* u) noex
     const double share = sticks ? 1.0 : slot.most / std::max(std::sqrt(size2), 1e-300);
     const Vec error_t = slot.per_r_t * (share * slot.q - pt);
     largest2 = std::max(largest2, error_n * error_n + dot(error_t, error_t));
-    const Kind kind = to_n <= 0.0 ? Kind::kOpen : sticks ? Kind::kSticks : Kind::kSlides;
-    changed_ += kind != std::exchange(slot.kind, kind);
-    if (kind != Kind::kOpen) count_ += !Friction ? 1 : sticks ? 3 : 2;
+    slot.kind = to_n <= 0.0 ? Kind::kOpen : sticks ? Kind::kSticks : Kind::kSlides;
+    if (slot.kind != Kind::kOpen) count_ += !Friction ? 1 : sticks ? 3 : 2;
   }
   return largest2;
 }
@@ -130,7 +129,7 @@ void ContactNewton::list_unknowns(const Contact* rows, const Vec* p, const Vec* 
   const auto add = [&](std::size_t s, Vec along, Vec with, double give, double cost, double wanted) {
     const std::int32_t k = slots_[s].row;
     const double now = dot(p[k], along);
-    unknowns_.push_back({s, along, with, give + cost_ * cost, wanted - give * now - dot(along, u[k]), now});
+    unknowns_.push_back({s, along, with, give + cost, wanted - give * now - dot(along, u[k]), now});
   };
   const auto direction = [&](const Slot& slot) {
     const Vec n = rows[slot.row].n;
@@ -226,8 +225,6 @@ bool ContactNewton::assemble(const Vec* p, TickTime& time) noexcept {
 
 template <bool Friction>
 bool ContactNewton::solve(const Contact* rows, Vec* p, Vec* u, TickTime& time) noexcept {
-  cost_ *= changed_ == 0 ? tuning.cost_fade_known : tuning.cost_fade;
-  if (std::exchange(begins_, false)) cost_ = 1.0;
   bring_forward();
   list_unknowns<Friction>(rows, p, u);
   if (!assemble<Friction>(p, time) || !dense_.solve(time)) return false;
