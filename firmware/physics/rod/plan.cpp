@@ -6,7 +6,8 @@ namespace ligature::physics::rod {
 
 Plan plan(const Plan& last, const TickReport& report, const Situation& now, const Numerics& numerics) noexcept {
   const bool fast = numerics.is_fast(now.hand_d);
-  const bool flies = now.released || now.node_d > numerics.max_substeps;  // > a diameter in a substep
+  // A thread flies when it was just released, or when a node moves by more than a diameter in a substep
+  const bool flies = now.released || now.node_d > numerics.max_substeps;
   Plan next;
   next.budget = numerics.budget(now.nodes, now.hand_d);
   const auto budget = static_cast<double>(numerics.budget(now.nodes, 0.0));

@@ -54,7 +54,7 @@ struct Tuning {
   int stale = 3;
   double moved = 0.16;
   /// Proximal term of Newton's method, relative to the contact's own response along the normal; across it twice as
-  /// much. Time lost in 40 pulls of surgeon's knots: 10.9 % with 5e-4, 7.4 % with 1e-3, 6.0 % with 1.5e-3; with 2.2e-3
+  /// much. Time lost in pulls of surgeon's knots: 10.9 % with 5e-4, 7.4 % with 1e-3, 6.0 % with 1.5e-3; with 2.2e-3
   /// held granny knots lose 1.3 % instead of 0.4 %. Test: Labour.IsSharedFairly
   double cost = 1.5e-3;
 
@@ -104,8 +104,8 @@ inline constexpr Tuning tuning;  // NOLINT(readability-identifier-naming): read 
 #endif
 
 /// Velocity error that is accepted when work runs short, m/s: the largest residual that Newton's method leaves in a
-/// thread at rest. So slower slip counts as rest; and if the last pass of unconverged sweeps changed a velocity by
-/// more, velocities are scaled down until no overlap deepens faster than this. Test: Unsettled.*
+/// thread at rest with `balanced`. So slower slip counts as rest; and if the last pass of unconverged sweeps changed a
+/// velocity by more, velocities are scaled down until no overlap deepens faster than this. Test: Unsettled.*
 [[nodiscard]] inline double loose_m_per_s() noexcept {
   return tuning.newton_near * tuning.newton_near * tuning.newton_near * tuning.settled_m_per_s;
 }

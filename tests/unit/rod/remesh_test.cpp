@@ -74,7 +74,7 @@ Vec momentum(const State& state) {
 
 constexpr double kHelix_m = 0.235;
 
-/// A helix around a strand, which is remeshed in most ticks.
+/// A helix around a strand, which is remeshed in several of its first ticks.
 Rod remeshed_helix() {
   Material m;
   m.length_m = kHelix_m;

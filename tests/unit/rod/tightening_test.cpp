@@ -101,13 +101,13 @@ TEST(Energy, NeverRisesWhileNobodyPulls) {
 // the free end's speed, or if a remesh restored bending energy that an earlier one had smoothed away. A small rise is
 // tolerated: when Newton's method fails in a jam and sweeps take over, overlaps grow by 1e-4 d. In 240 sudden releases
 // at 0.17 to 0.245 m/s the energy rose in 96, by more than 4 uJ in four, and by 18 uJ at most; in six strands
-// overlapped by more than 0.06 d (0.13 d at most). So only sizes are bounded here, far above these.
+// overlapped by more than 0.06 d (0.13 d at most). So only sizes are bounded here, above these.
 TEST(Energy, NeverRisesWhileNobodyPullsTwoThrows) {
   for (const char* scene : {"suture-3-0-square.toml", "suture-3-0-surgeons.toml"}) {
     for (const bool sudden : {true, false}) {
       const Released r = release(scene, 0.2, sudden);
       const std::string name = std::string(scene) + (sudden ? " sudden" : " gentle");
-      EXPECT_LT(r.rise_J, 1e-4) << name;
+      EXPECT_LT(r.rise_J, 5e-5) << name;
       EXPECT_LT(r.end_J, 0.95 * r.start_J) << name;
       EXPECT_GT(r.give_J, 1e-7) << name;
       EXPECT_LT(r.overlap_d, 0.25) << name;

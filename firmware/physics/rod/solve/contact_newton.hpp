@@ -34,7 +34,7 @@ struct Contact;
 /// Without damping this cycles: a few kinds are wrong, and impulses to which velocities hardly respond (cond W is 1e5)
 /// become a thousand times too large, which makes all other kinds wrong. So a term proportional to the change of each
 /// impulse is added to its equation (a proximal point method [Rockafellar 1976]), which mostly damps such weak
-/// directions. It is zero in the solution, where impulses no longer change.
+/// directions. This term vanishes in the solution, where impulses no longer change.
 ///
 /// Z may be some substeps old: after each step the caller computes the velocities with the present A.
 class ContactNewton {
