@@ -74,7 +74,6 @@ class TickTime {
 
   /// Number of the first query that was answered "no", counted from 0; -1: none was.
   [[nodiscard]] int cut_at() const noexcept { return cut_at_; }
-  [[nodiscard]] std::int64_t longest_ns() const noexcept { return longest_ns_; }
 
  private:
   static constexpr std::int64_t kFade = 8;  // measured durations decay by 1 / kFade per tick

@@ -19,12 +19,10 @@ struct Vec {
 };
 
 [[nodiscard]] inline Vec make(double x, double y, double z) noexcept { return {Lanes{x, y, z, 0.0}}; }
-[[nodiscard]] inline Vec splat(double a) noexcept { return {Lanes{a, a, a, a}}; }
 [[nodiscard]] inline Vec operator+(Vec a, Vec b) noexcept { return {a.v + b.v}; }
 [[nodiscard]] inline Vec operator-(Vec a, Vec b) noexcept { return {a.v - b.v}; }
 [[nodiscard]] inline Vec operator-(Vec a) noexcept { return {-a.v}; }
 [[nodiscard]] inline Vec operator*(double s, Vec a) noexcept { return {s * a.v}; }
-[[nodiscard]] inline Vec operator*(Vec a, double s) noexcept { return {s * a.v}; }
 inline Vec& operator+=(Vec& a, Vec b) noexcept { return a = a + b; }
 inline Vec& operator-=(Vec& a, Vec b) noexcept { return a = a - b; }
 
@@ -44,6 +42,7 @@ inline Vec& operator-=(Vec& a, Vec b) noexcept { return a = a - b; }
   return sums(a.v * a.v, b.v * b.v, c.v * c.v, d.v * d.v);
 }
 [[nodiscard]] inline double norm(Vec a) noexcept { return std::sqrt(dot(a, a)); }
+[[nodiscard]] inline Vec unit(Vec a) noexcept { return (1.0 / norm(a)) * a; }  ///< a / |a|; @pre a is not zero
 
 /// a x b: rotate(a * rotate(b) - rotate(a) * b), rotate = (y, z, x).
 [[nodiscard]] inline Vec cross(Vec a, Vec b) noexcept {

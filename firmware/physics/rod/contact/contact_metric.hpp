@@ -31,7 +31,6 @@ class ContactMetric {
   [[nodiscard]] bool covers(int first, int last) const noexcept { return first_ <= first && last <= last_; }
   void invalidate() noexcept { first_ = 1, last_ = 0; }
   [[nodiscard]] int first() const noexcept { return first_; }
-  [[nodiscard]] int last() const noexcept { return last_; }
   [[nodiscard]] int capacity() const noexcept { return capacity_; }
 
   /// A node's row of C^-1, in single precision; entry j belongs to node first() + j. Up to seven entries past its end

@@ -28,7 +28,6 @@ class Motion {
   /// because the list's margin of distance is chosen for them.
   void restart() noexcept;
 
-  [[nodiscard]] double speed(std::size_t segment) const noexcept { return speed_[segment]; }
   [[nodiscard]] double rate(std::size_t a, std::size_t b) const noexcept {
     return std::min(speed_[a] + speed_[b], drift_[b + 1] - drift_[a]);
   }

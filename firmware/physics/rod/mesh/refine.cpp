@@ -209,7 +209,7 @@ void Refine::merge(const Material& material, State& state, int node) noexcept {
 }
 
 // Inserts a node in the middle of a segment's chord.
-void Refine::split(const Material&, State& state, int segment) noexcept {
+void Refine::split(State& state, int segment) noexcept {
   const auto j = static_cast<std::size_t>(segment), i = j + 1;
   const auto insert = [&](auto& array, auto value) {
     open_slot(array, i);
@@ -255,15 +255,12 @@ double Refine::hold_back(const Material& material, const State& state, std::span
   const Mesh& mesh = state.mesh;
   const std::size_t n = at_.size();
   const auto bend_gain = [&](std::size_t i) {
-    const Vec turn = mesh.inv_rest[i] * (state.x[i + 1] - state.x[i]) -
-                     mesh.inv_rest[i - 1] * (state.x[i] - state.x[i - 1]) - state.rest_bend[i];
     const Vec freed = (1.0 - fade_[i]) * (born.empty() ? state.rest_bend[i] : state.rest_bend[i] - born[i]);
-    return mesh.weight[i] * (dot(turn, freed) + 0.5 * dot(freed, freed));
+    return mesh.weight[i] * (dot(state.elastic_bend(i), freed) + 0.5 * dot(freed, freed));
   };
   const auto strain_gain = [&](std::size_t j) {
-    const double strain = norm(state.x[j + 1] - state.x[j]) * mesh.inv_rest[j] - 1.0 - state.rest_strain[j];
     const double freed = (1.0 - strain_fade_[j]) * state.rest_strain[j];
-    return material.EA_N * mesh.rest[j] * (strain * freed + 0.5 * freed * freed);
+    return material.EA_N * mesh.rest[j] * (state.elastic_strain(j) * freed + 0.5 * freed * freed);
   };
   double up_J = 0.0, down_J = 0.0;
   const auto count = [&](double gain_J) { (gain_J > 0.0 ? up_J : down_J) += gain_J; };
@@ -308,20 +305,13 @@ bool Refine::update(const Material& material, State& state, const Forces& forces
       continue;
     }
     if (!changed) {
-      for (std::size_t q = 0; q + 1 < n; ++q) {
-        tension_[q] =
-            material.EA_N * (norm(state.x[q + 1] - state.x[q]) * state.mesh.inv_rest[q] - 1.0 - state.rest_strain[q]);
-      }
+      for (std::size_t q = 0; q + 1 < n; ++q) tension_[q] = material.EA_N * state.elastic_strain(q);
       moment_[0] = moment_[n - 1] = Vec{};
-      for (std::size_t q = 1; q + 1 < n; ++q) {
-        const Vec turn = state.mesh.inv_rest[q] * (state.x[q + 1] - state.x[q]) -
-                         state.mesh.inv_rest[q - 1] * (state.x[q] - state.x[q - 1]) - state.rest_bend[q];
-        moment_[q] = state.mesh.weight[q] * turn;
-      }
+      for (std::size_t q = 1; q + 1 < n; ++q) moment_[q] = state.mesh.weight[q] * state.elastic_bend(q);
     }
     changed = true;
     merge(material, state, node);
-    split(material, state, segment > node ? segment - 1 : segment);
+    split(state, segment > node ? segment - 1 : segment);
   }
   if (!changed) return false;
   contacts.relabel(state.mesh.s);
@@ -331,15 +321,10 @@ bool Refine::update(const Material& material, State& state, const Forces& forces
 void Refine::keep_stress(const Material& material, State& state) noexcept {
   const Mesh& mesh = state.mesh;
   const std::size_t n = at_.size();
-  for (std::size_t j = 0; j + 1 < n; ++j) {
-    const double strain = norm(state.x[j + 1] - state.x[j]) * mesh.inv_rest[j] - 1.0;
-    state.rest_strain[j] = strain - tension_[j] / material.EA_N;
-  }
+  for (std::size_t j = 0; j + 1 < n; ++j) state.rest_strain[j] = state.strain(j) - tension_[j] / material.EA_N;
   for (std::size_t i = 1; i + 1 < n; ++i) {
     if (mesh.weight[i] == 0.0) continue;
-    const Vec turn =
-        mesh.inv_rest[i] * (state.x[i + 1] - state.x[i]) - mesh.inv_rest[i - 1] * (state.x[i] - state.x[i - 1]);
-    state.rest_bend[i] = turn - (1.0 / mesh.weight[i]) * moment_[i];
+    state.rest_bend[i] = state.bend(i) - (1.0 / mesh.weight[i]) * moment_[i];
   }
 }
 

@@ -70,7 +70,7 @@ class Refine {
   /// when no ratio is below `most`.
   [[nodiscard]] int cheapest_merge(double most) const noexcept;
   void merge(const Material& material, State& state, int node) noexcept;
-  void split(const Material& material, State& state, int segment) noexcept;
+  void split(State& state, int segment) noexcept;
 
   double unit_m_ = 0.0;
   std::vector<std::int32_t> at_;     // material coordinates of nodes, in mesh units

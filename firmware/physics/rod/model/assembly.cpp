@@ -148,27 +148,23 @@ template void assemble<true>(const Material&, const State&, Vec, double, Forces&
 Energy energy(const Material& material, const State& state, Vec gravity) noexcept {
   const Mesh& mesh = state.mesh;
   Energy e;
-  Vec before{};
   for (std::size_t i = 0; i < mesh.s.size(); ++i) {
     e.kinetic_J += 0.5 * mesh.mass[i] * dot(state.v[i], state.v[i]);
     e.gravity_J -= mesh.mass[i] * dot(gravity, state.x[i]);
     if (i + 1 == mesh.s.size()) break;
-    const Vec t = mesh.inv_rest[i] * (state.x[i + 1] - state.x[i]);
-    const double strain = norm(t) - 1.0, stressed = strain - state.rest_strain[i];
+    const double strain = state.strain(i), stressed = strain - state.rest_strain[i];
     e.stretch_J += 0.5 * material.EA_N * stressed * stressed * mesh.rest[i];
     e.max_strain = std::max(e.max_strain, strain);
-    if (i > 0) {
-      const Vec q = t - before - state.rest_bend[i];
-      e.bend_J += 0.5 * mesh.weight[i] * dot(q, q);
-    }
-    before = t;
+    if (i == 0) continue;
+    const Vec q = state.elastic_bend(i);
+    e.bend_J += 0.5 * mesh.weight[i] * dot(q, q);
   }
   for (int h = 0; h < state.hold_count; ++h) {
     const Hold& hold = state.holds[static_cast<std::size_t>(h)];
     if (hold.node < 0 || !hold.directed) continue;
     const auto i = static_cast<std::size_t>(hold.node);
     const auto half = [&](std::size_t j, double EI_N_m2) {
-      const Vec q = mesh.inv_rest[j] * (state.x[j + 1] - state.x[j]) - hold.direction;
+      const Vec q = state.tangent(j) - hold.direction;
       e.bend_J += EI_N_m2 * mesh.inv_rest[j] * dot(q, q);
     };
     if (i > 0) half(i - 1, mesh.EI_before[i]);

@@ -58,9 +58,7 @@ void Spin::assemble(const Material& m, const State& state, double dt_s) noexcept
     off_[i - 1] = -k;
     diag_[i - 1] += k, diag_[i] += k;
     if (!shaped) continue;
-    const Vec bend =
-        mesh.inv_rest[i] * (state.x[i + 1] - state.x[i]) - mesh.inv_rest[i - 1] * (state.x[i] - state.x[i - 1]);
-    const Vec q = mesh.weight[i] * (bend - state.rest_bend[i]);
+    const Vec q = mesh.weight[i] * state.elastic_bend(i);
     const double turn = 0.5 * dt_s * dot(q, across_[i]),
                  stiff = 0.5 * implicit * mesh.weight[i] * dot(across_[i], across_[i]);
     rhs_[i - 1] += turn, rhs_[i] += turn;

@@ -77,7 +77,6 @@ class Spin {
   void restore(int first, int last) noexcept;
 
   [[nodiscard]] double energy_J(const Material& material, const State& state) const noexcept;
-  [[nodiscard]] Vec director(int segment) const noexcept { return director_[static_cast<std::size_t>(segment)]; }
   LIGATURE_MEMBERS(Spin, director, tangent, rate, rolled, middle_m, before, after, drift_before, drift_after, held,
                    was_held, normal, binormal, born, across, born_size, set, limit2, torque, diag, off, rhs, down, up,
                    answer, saved_rate, saved_torque, old_director, old_tangent, old_rate, old_middle_m, old_set)

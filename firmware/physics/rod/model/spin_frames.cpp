@@ -9,21 +9,6 @@
 #include "firmware/physics/rod/model/twist.hpp"
 
 namespace ligature::physics::rod {
-namespace {
-
-Vec unit(Vec a) noexcept { return (1.0 / norm(a)) * a; }
-
-Vec rolled(Vec director, Vec tangent, double angle) noexcept {
-  return std::cos(angle) * director + std::sin(angle) * cross(tangent, director);
-}
-
-double angle_about(Vec axis, Vec from, Vec to) noexcept {
-  return std::atan2(dot(axis, cross(from, to)), dot(from, to));
-}
-
-Vec edge(const State& state, std::size_t j) noexcept { return unit(state.x[j + 1] - state.x[j]); }
-
-}  // namespace
 
 void Spin::reserve(int nodes) {
   const auto n = static_cast<std::size_t>(nodes);

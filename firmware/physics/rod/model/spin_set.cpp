@@ -25,12 +25,9 @@ double Spin::yield(const Material& m, State& state) noexcept {
   const std::size_t edges = state.x.size() - 1;
   const double f = m.set_fraction, rest = 1.0 - f;
   double lost_J = 0.0;
-  Vec before = mesh.inv_rest[0] * (state.x[1] - state.x[0]);
   for (std::size_t i = 1; i < edges; ++i) {
-    const Vec t = mesh.inv_rest[i] * (state.x[i + 1] - state.x[i]);
-    const Vec beyond = t - before - state.rest_bend[i] - rest * set_[i];
+    const Vec beyond = state.elastic_bend(i) - rest * set_[i];
     const double size2 = dot(beyond, beyond);
-    before = t;
     if (size2 <= limit2_[i]) continue;
     const double size = std::sqrt(size2), limit = std::sqrt(limit2_[i]);
     const Vec slip = (1.0 - limit / size) * beyond;

@@ -2,6 +2,7 @@
 // State of a rod: positions, velocities, holds, and the internal forces of the last substep. Allocated once.
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
 #include "firmware/physics/members.hpp"
@@ -41,6 +42,14 @@ struct State {
   int hold_count = 0;
 
   [[nodiscard]] int nodes() const noexcept { return mesh.nodes(); }
+  /// Tangent of segment j, with its stretch: length l / l_rest.
+  [[nodiscard]] Vec tangent(std::size_t j) const noexcept { return mesh.inv_rest[j] * (x[j + 1] - x[j]); }
+  /// Strain l / l_rest - 1 of segment j, and without its stress-free part.
+  [[nodiscard]] double strain(std::size_t j) const noexcept { return norm(x[j + 1] - x[j]) * mesh.inv_rest[j] - 1.0; }
+  [[nodiscard]] double elastic_strain(std::size_t j) const noexcept { return strain(j) - rest_strain[j]; }
+  /// Bend t_i - t_{i-1} of vertex i, and without its stress-free part. @pre 0 < i < n - 1.
+  [[nodiscard]] Vec bend(std::size_t i) const noexcept { return tangent(i) - tangent(i - 1); }
+  [[nodiscard]] Vec elastic_bend(std::size_t i) const noexcept { return bend(i) - rest_bend[i]; }
   void resize(int n) {
     mesh.resize(n);
     for (auto* array : {&x, &v, &load, &rest_bend}) array->assign(static_cast<std::size_t>(n), Vec{});

@@ -6,26 +6,15 @@
 namespace ligature::physics::rod {
 namespace {
 
-Vec unit(Vec a) noexcept { return (1.0 / norm(a)) * a; }
-
-Vec edge(const State& state, int j) noexcept {
-  const auto k = static_cast<std::size_t>(j);
-  return unit(state.x[k + 1] - state.x[k]);
-}
-
 // The director of hold `from`, parallel-transported along the centreline to hold `to`.
 Vec carried(const State& state, const Hold& from, const Hold& to) noexcept {
   Vec u = from.director, t = from.tangent;
-  for (int j = from.node; j < to.node; ++j) {
+  for (auto j = static_cast<std::size_t>(from.node); j < static_cast<std::size_t>(to.node); ++j) {
     const Vec e = edge(state, j);
     u = transport(u, t, e);
     t = e;
   }
   return transport(u, t, to.tangent);
-}
-
-double angle_about(Vec axis, Vec from, Vec to) noexcept {
-  return std::atan2(dot(axis, cross(from, to)), dot(from, to));
 }
 
 const Hold& hold_of(const State& state, int k) noexcept { return state.holds[static_cast<std::size_t>(k)]; }
@@ -34,9 +23,10 @@ const Hold& hold_of(const State& state, int k) noexcept { return state.holds[sta
 
 Vec tangent_at(const State& state, const Hold& hold) noexcept {
   if (hold.directed) return hold.direction;
-  if (hold.node == 0) return edge(state, 0);
-  if (hold.node == state.nodes() - 1) return edge(state, hold.node - 1);
-  return unit(edge(state, hold.node - 1) + edge(state, hold.node));
+  const auto i = static_cast<std::size_t>(hold.node);
+  if (i == 0) return edge(state, 0);
+  if (i + 1 == state.x.size()) return edge(state, i - 1);
+  return unit(edge(state, i - 1) + edge(state, i));
 }
 
 double Twist::raw_turn(const State& state, int from, int to) const noexcept {
@@ -45,7 +35,7 @@ double Twist::raw_turn(const State& state, int from, int to) const noexcept {
 }
 
 void Twist::roll(Hold& hold, double angle_rad) noexcept {
-  hold.director = std::cos(angle_rad) * hold.director + std::sin(angle_rad) * cross(hold.tangent, hold.director);
+  hold.director = rolled(hold.director, hold.tangent, angle_rad);
 }
 
 void Twist::attach(State& state, int hold) noexcept {

@@ -2,6 +2,8 @@
 // Quasi-static twist of the thread between the holds that fix its roll.
 
 #include <array>
+#include <cmath>
+#include <cstddef>
 
 #include "firmware/physics/members.hpp"
 #include "firmware/physics/rod/model/state.hpp"
@@ -33,7 +35,6 @@ class Twist {
   void update(const Material& material, State& state, Forces& forces) noexcept;
 
   [[nodiscard]] double energy_J() const noexcept { return energy_J_; }
-  [[nodiscard]] int spans() const noexcept { return count_ > 0 ? count_ - 1 : 0; }
   [[nodiscard]] double turn_rad(int span) const noexcept { return turn_[static_cast<std::size_t>(span)]; }
   [[nodiscard]] double moment_Nm(int span) const noexcept { return moment_[static_cast<std::size_t>(span)]; }
   LIGATURE_MEMBERS(Twist, order, turn, moment, count, energy_J)
@@ -47,6 +48,19 @@ class Twist {
   int count_ = 0;
   double energy_J_ = 0.0;
 };
+
+/// Unit tangent of segment j.
+[[nodiscard]] inline Vec edge(const State& state, std::size_t j) noexcept { return unit(state.x[j + 1] - state.x[j]); }
+
+/// The vector `across`, turned by the angle, rad, about the unit vector `axis`. @pre the two are perpendicular.
+[[nodiscard]] inline Vec rolled(Vec across, Vec axis, double angle) noexcept {
+  return std::cos(angle) * across + std::sin(angle) * cross(axis, across);
+}
+
+/// Angle about `axis` from one vector to the other, rad, in -pi to pi. @pre both are perpendicular to the axis.
+[[nodiscard]] inline double angle_about(Vec axis, Vec from, Vec to) noexcept {
+  return std::atan2(dot(axis, cross(from, to)), dot(from, to));
+}
 
 /// Unit tangent of the thread where it is held.
 [[nodiscard]] Vec tangent_at(const State& state, const Hold& hold) noexcept;

@@ -135,7 +135,7 @@ void ContactNewton::list_unknowns(const Contact* rows, const Vec* p, const Vec* 
     const Vec n = rows[slot.row].n;
     if (const double size = norm(slot.q); size > 1e-30) return (1.0 / size) * slot.q;
     const Vec aside = std::abs(n[0]) < 0.7 ? make(1, 0, 0) : make(0, 1, 0), across = aside - dot(aside, n) * n;
-    return (1.0 / norm(across)) * across;
+    return unit(across);
   };
   for (std::size_t s = 0; s < carrying_; ++s) {
     Slot& slot = slots_[s];
