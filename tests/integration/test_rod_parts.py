@@ -109,8 +109,10 @@ class Parts(unittest.TestCase):
         return [f for f in counts.functions if pattern.search(f)]
 
     def test_the_whole_scene_does_execute_them(self):
+        """Sweeps solve contact with a desk, and Newton's method contact of the thread with itself alone."""
         for files in (TWIST, CONTACT, ADAPTIVE):
-            self.assertEqual(len(self.executed(self.full, files)), len(files), self.full.files.keys())
+            executed = {**self.executed(self.full, files), **self.executed(self.without["world"], files)}
+            self.assertEqual(sorted(executed), sorted(files))
         self.assertTrue(self.called(self.full, WORLD))
         self.assertTrue(self.called(self.full, RUBS))
 

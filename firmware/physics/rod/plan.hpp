@@ -1,6 +1,7 @@
 #pragma once
-// Adapts the rod's work to the computing time that it has: each tick gets a plan, made from the plan of the last tick
-// and from what happened in it.
+// The rules of a tick: how many time steps it has, how exactly contacts are solved, and how long a step may wait.
+
+#include <algorithm>
 
 #include "firmware/physics/members.hpp"
 #include "firmware/physics/rod/model/material.hpp"
@@ -8,28 +9,51 @@
 
 namespace ligature::physics::rod {
 
-/// What happens to the thread in a tick, and what came of the last one.
+/// What decides about the time steps of a tick. Lengths are in thread diameters.
 struct Situation {
-  double hand_d = 0.0;         ///< motion of the fastest hold in a tick, thread diameters
-  double apart_m_per_s = 0.0;  ///< largest relative speed of two holds; of a single hold: its speed
-  bool released = false;       ///< a hold was released since the last tick
-  bool waits = false;          ///< a substep that the last tick began is not solved yet
-  double node_d = 0.0;         ///< motion of the fastest node in a tick, thread diameters
-  int nodes = 0;
+  double hand_d = 0.0;    ///< motion of the fastest hold in a tick
+  double node_d = 0.0;    ///< motion of the fastest node in a tick
+  bool released = false;  ///< a hold was released since the last tick
+  bool waits = false;     ///< a substep that the last tick began is not solved yet
+
+  /// A hand moves by more than a diameter in a tick; or the thread flies: a hold was just released, or a node moves by
+  /// more than a diameter in a substep.
+  [[nodiscard]] bool is_fast(const Numerics& numerics) const noexcept {
+    return hand_d > 1.0 || released || node_d > numerics.max_substeps;
+  }
 };
 
-/// Rules of one tick. They depend on nothing but the arguments of plan(), so each can be tested without a thread.
-struct Plan {
-  int substeps = 0;
-  long budget = 0;            ///< of contact work, instructions
-  double leniency = 1.0;      ///< 1 to 6: factor of the tolerance's speed-dependent part; grows after ticks cut short
-  double pace_m_per_s = 0.0;  ///< half the relative speed of the hands
-  bool new_matrix = false;    ///< Newton's inverse matrix of the last tick serves no more
-  LIGATURE_MEMBERS(Plan, substeps, budget, leniency, pace_m_per_s, new_matrix)
-};
+/// Number of substeps of the next tick. It is largest when the motion is fast. It is halved when the last tick used a
+/// large part of its work, or the clock ended it. While a substep waits, it stays. @param last the last tick
+/// @param budget of a tick, instructions
+[[nodiscard]] inline int substeps_of(const Situation& now, const TickReport& last, long budget,
+                                     const Numerics& numerics) noexcept {
+  if (now.is_fast(numerics)) return numerics.max_substeps;
+  if (now.waits) return last.substeps;
+  const bool labours =
+      static_cast<double>(last.work) > tuning.labours * static_cast<double>(budget) || last.cut_at >= 0;
+  return labours ? std::min(numerics.substeps, std::max(tuning.fewest_substeps, numerics.substeps / 2))
+                 : numerics.substeps;
+}
 
-[[nodiscard]] Plan plan(const Plan& last, const TickReport& report, const Situation& now,
-                        const Numerics& numerics) noexcept;
+/// Is the inverse matrix of Newton's method, from the last tick, of no use? So it is if the time step was another one,
+/// or if the motion is fast, which changes the thread's shape.
+[[nodiscard]] inline bool needs_new_matrix(const Situation& now, int substeps, int last,
+                                           const Numerics& numerics) noexcept {
+  return substeps != last || (now.is_fast(numerics) && !now.waits);
+}
+
+/// Tolerance of the contact solver, m/s: a pass that changes no velocity by more is the last. It grows with the speed
+/// of the hands or, as after a release, of the thread itself, but stays below a tenth of the fastest node's speed, so
+/// that a nearly resting thread does not drift.
+/// @param pace_m_per_s  half the relative speed of the hands  @param own_m_per_s  largest nodal speed relative to the
+/// mean velocity  @param fastest_m_per_s  largest nodal speed
+[[nodiscard]] inline double tolerance(double pace_m_per_s, double own_m_per_s, double fastest_m_per_s,
+                                      const Numerics& numerics) noexcept {
+  const double speed = std::max(pace_m_per_s, tuning.stir * own_m_per_s);
+  return std::min(numerics.settled_m_per_s + numerics.settled_share * speed,
+                  tuning.creep * std::max(numerics.settled_m_per_s, fastest_m_per_s));
+}
 
 /// How long a substep may wait that Newton's method has not solved. A waiting substep is continued in the next tick.
 /// After tuning.patience ticks, or if more work for Newton's method would not help, sweeps solve the substep.

@@ -135,7 +135,7 @@ int Rod::clamp(int node, Vec p, Vec direction) noexcept {
   if (h < 0) return h;
   Hold& hold = state_.holds[static_cast<std::size_t>(h)];
   hold.directed = true;
-  hold.direction = (1.0 / norm(direction)) * direction;
+  hold.direction = unit(direction);
   if (parts_.twist) twist_.attach(state_, h);
   moved();
   return h;
@@ -228,20 +228,18 @@ void Rod::begin_tick(const HandSpeed& hands, const TimeLeft& left) noexcept {
   const bool was_alone = alone_;
   alone_ = hands.holds < 2 && hands.fastest == 0.0 && std::none_of(bodies.begin(), bodies.end(), moves);
   const double in_a_tick_d = numerics_.tick_s / (2.0 * material_.radius_m);
-  plan_ = plan(plan_, report_,
-               {.hand_d = in_a_tick_d * hands.fastest,
-                .apart_m_per_s = hands.apart,
-                .released = released_,
-                .waits = patience_.waits(),
-                .node_d = touches() ? in_a_tick_d * motion_.fastest() : 0.0,
-                .nodes = state_.nodes()},
-               numerics_);
-  released_ = false;
-  report_ = TickReport{.substeps = plan_.substeps};
+  const Situation now{.hand_d = in_a_tick_d * hands.fastest,
+                      .node_d = touches() ? in_a_tick_d * motion_.fastest() : 0.0,
+                      .released = std::exchange(released_, false),
+                      .waits = patience_.waits()};
+  const long budget = numerics_.budget(state_.nodes());
+  const int last = report_.substeps;
+  report_ = TickReport{.substeps = substeps_of(now, report_, budget, numerics_)};
   RodNow::operator=({});
+  pace_m_per_s_ = 0.5 * hands.apart;
   // The clock is queried between forces, matrix and solution, each O(n): so the longest piece grows with n.
   const std::int64_t piece_ns = TickTime::kPiece_ns * std::max(1, state_.nodes() / kNodesInPiece);
-  work_.start(plan_.budget, left, piece_ns);
+  work_.start(budget, left, piece_ns);
   if (alone_ && !was_alone && parts_.adaptive) kept_J_ = all_J(energy());
   if (!mesh_held_) report_.remeshes += remesh();
   if (parts_.frames()) {
@@ -255,7 +253,7 @@ void Rod::begin_tick(const HandSpeed& hands, const TimeLeft& left) noexcept {
     motion_.measure(state_.v.data());
     stir_m_per_s_ = stir(state_.v);
     contacts_.forget_bodies();
-    if (plan_.new_matrix) contacts_.forget_matrix();
+    if (needs_new_matrix(now, report_.substeps, last, numerics_)) contacts_.forget_matrix();
   }
 }
 

@@ -9,6 +9,7 @@
 #include "firmware/physics/rod/model/assembly.hpp"
 #include "firmware/physics/rod/model/twist.hpp"
 #include "firmware/physics/rod/plan.hpp"
+#include "firmware/physics/rod/tick_report.hpp"
 
 namespace ligature::physics::rod {
 
@@ -51,7 +52,6 @@ struct RodCourse {
   Twist twist_;
   Refine refine_;
   TickReport report_;
-  Plan plan_;
   Patience patience_;
   bool released_ = false;  ///< a hold was released since the last tick
   bool alone_ = false;     ///< at most one hold, and nothing that holds or touches the thread moves (glossary)
@@ -59,8 +59,8 @@ struct RodCourse {
   bool remeshed_ = false;  ///< nodes moved along the thread since Spin was last updated
   double kept_J_ = 0.0;    ///< alone only: total energy at the end of the last tick
   double give_J_ = 0.0;    ///< elastic energy of the contacts
-  LIGATURE_MEMBERS(RodCourse, state, forces, twist, refine, report, plan, patience, released, alone, faded, remeshed,
-                   kept_J, give_J)
+  LIGATURE_MEMBERS(RodCourse, state, forces, twist, refine, report, patience, released, alone, faded, remeshed, kept_J,
+                   give_J)
 };
 
 /// What a copy takes over in addition.
@@ -87,6 +87,7 @@ struct RodKept : World, RodCourse, RodMatter {};
 
 /// What belongs to the tick under way. Every tick begins with a new one.
 struct RodNow {
+  double pace_m_per_s_ = 0.0;   ///< half the relative speed of the hands
   double stir_m_per_s_ = 0.0;   ///< largest nodal speed relative to the mean velocity
   double tick_travel_m_ = 0.0;  ///< upper bound of any node's travel since the tick began
   int substep_index_ = 0;

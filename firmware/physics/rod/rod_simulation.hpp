@@ -61,7 +61,7 @@ class RodSimulation : private HandsCourse, private Stage {
   void set_work(long instructions) noexcept {
     initial_.numerics().given_work = rod_.numerics().given_work = instructions;
   }
-  [[nodiscard]] long work() const noexcept { return rod_.numerics().budget(rod_.state().nodes(), 0.0); }
+  [[nodiscard]] long work() const noexcept { return rod_.numerics().budget(rod_.state().nodes()); }
   void reset() noexcept;
   [[nodiscard]] bool continue_from(const RodSimulation& other) noexcept;
   void set_state(std::span<const Vec3> p_W, std::span<const Vec3> v_W) noexcept;

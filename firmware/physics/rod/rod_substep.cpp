@@ -103,16 +103,10 @@ bool Rod::prepare_metric(double dt_s) noexcept {
   return metric_.prepare(state_.mesh, material_, dt_s, from, to, work_.time());
 }
 
-// Tolerance of the contact solver, m/s: a pass that changes no velocity by more is the last. It grows with the speed of
-// the hands or, as after a release, of the thread itself (stir_m_per_s_), but stays below a tenth of the fastest node's
-// speed, so that a nearly resting thread does not drift. For a thread that is alone its own speed does not count: with
-// contacts closing 0.01 m/s too fast, a released surgeon's knot gained 3 % of its stored energy. The plan's leniency
-// loosens the tolerance after ticks that were cut short: a moderate error in every substep is better than some
-// converged substeps and no passes for the rest.
+// For a thread that is alone its own speed does not loosen the tolerance: with contacts closing 0.01 m/s too fast, a
+// released surgeon's knot gained 3 % of its stored energy.
 double Rod::settled() const noexcept {
-  const double speed = std::max(plan_.pace_m_per_s, alone_ ? 0.0 : tuning.stir * stir_m_per_s_);
-  const double settled = numerics_.settled_m_per_s + plan_.leniency * numerics_.settled_share * speed;
-  return std::min(settled, tuning.creep * std::max(numerics_.settled_m_per_s, motion_.fastest()));
+  return tolerance(pace_m_per_s_, alone_ ? 0.0 : stir_m_per_s_, motion_.fastest(), numerics_);
 }
 
 // Chooses the contacts that are solved, and with them the range of nodes that is solved with contacts. @return nothing

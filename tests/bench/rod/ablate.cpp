@@ -27,7 +27,7 @@ namespace {
 
 struct Number {
   const char* name;
-  std::variant<double Tuning::*, int Tuning::*> at;
+  std::variant<double Tuning::*, int Tuning::*, long Tuning::*> at;
   std::vector<double> values;  ///< empty: half and double
 
   [[nodiscard]] double get() const {
@@ -36,6 +36,7 @@ struct Number {
   void set(double value) const {
     if (const auto* real = std::get_if<0>(&at)) tuning.** real = value;
     if (const auto* whole = std::get_if<1>(&at)) tuning.** whole = static_cast<int>(value);
+    if (const auto* large = std::get_if<2>(&at)) tuning.** large = static_cast<long>(value);
   }
 };
 
@@ -55,17 +56,14 @@ const std::vector<Number> kNumbers = {
     NUMBER(settled_share, 0.0, 0.002, 0.008),
     NUMBER(stir, 0.0, 0.3),
     NUMBER(creep, 0.05, 1e9),
-    NUMBER(most_leniency, 1.0, 12.0),
-    NUMBER(leniency_up, 1.2, 6.0),
-    NUMBER(leniency_down, 0.5, 0.98),
     NUMBER(newton_near, 1.0, 6.0),
     NUMBER(stale, 1, 100),
     NUMBER(moved, 0.05, 0.5),
     NUMBER(cost, 0.0, 7e-4, 3e-3),
+    NUMBER(work),
     NUMBER(substeps, 10, 12, 24),
     NUMBER(fewest_substeps, 6, 13, 100),
-    NUMBER(labours, 0.1, 0.5, 1e9),
-    NUMBER(rush, 0.0, 1.5),
+    NUMBER(labours, 0.1, 0.4, 1e9),
     NUMBER(patience, 0, 3, 48),
     NUMBER(turn_rad),
     NUMBER(start_turn_rad),

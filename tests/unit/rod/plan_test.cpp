@@ -1,4 +1,4 @@
-// The plan of a tick, tested without a thread: what happened in the tick before, and how the rod changes its plan.
+// The number of time steps in a tick, and how long one may wait, tested without a thread.
 
 #include "firmware/physics/rod/plan.hpp"
 
@@ -12,82 +12,65 @@ namespace {
 using namespace physics::rod;
 
 constexpr Numerics kBalanced;
-const long kBudget = kBalanced.budget(154, 0.0);
+const long kBudget = kBalanced.budget(154);
 
-TickReport after(double share_of_budget, int cut_short = 0, int cut_at = -1, int substeps = kBalanced.substeps) {
+TickReport after(double share_of_budget, int substeps = kBalanced.substeps, int cut_at = -1) {
   TickReport r;
   r.work = static_cast<long>(share_of_budget * static_cast<double>(kBudget));
-  r.cut_short = cut_short, r.cut_at = cut_at, r.substeps = substeps;
+  r.substeps = substeps, r.cut_at = cut_at;
   return r;
 }
 
-struct Row {
-  const char* why;
-  Plan last;
-  TickReport report;
-  Situation now;
-  int substeps;
-};
-
-TEST(Plan, SubstepsFollowTheTable) {
+TEST(Substeps, FollowTheTable) {
   const int whole = kBalanced.substeps, fewer = tuning.fewest_substeps;
-  const Plan calm;
-  for (const Row& row : std::vector<Row>{
-           {"nothing happened", calm, after(0.2), {}, whole},
-           {"a large share of the budget was used", calm, after(0.3), {}, fewer},
-           {"the clock ended the tick", calm, after(0.1, 0, 7), {}, fewer},
-           {"a substep waits: it goes on with its time step", calm, after(0.95, 1, -1, 13), {.waits = true}, 13},
-           {"a hand lets go", calm, after(0.95), {.released = true}, whole},
-           {"the thread flies, as after a release", calm, after(0.95), {.node_d = whole + 0.1}, whole},
-           {"the thread has come down", calm, after(0.95), {.node_d = whole - 0.1}, fewer},
-           {"a fast hand is followed, whatever it costs", calm, after(0.95), {.hand_d = 1.1}, whole},
-       }) {
-    Situation now = row.now;
-    now.nodes = 154;
-    EXPECT_EQ(plan(row.last, row.report, now, kBalanced).substeps, row.substeps) << row.why;
-  }
-}
-
-TEST(Plan, AFastHandHasALargerBudget) {
-  const auto budget = [](double hand_d) {
-    return plan({}, after(0.2), {.hand_d = hand_d, .nodes = 154}, kBalanced).budget;
+  struct Row {
+    const char* why;
+    Situation now;
+    TickReport last;
+    int substeps;
   };
-  EXPECT_EQ(budget(0.0), kBudget);
-  EXPECT_EQ(budget(1.0), kBudget);
-  EXPECT_EQ(budget(1.1), static_cast<long>((1.0 + tuning.rush) * static_cast<double>(kBudget)));
+  for (const Row& row : std::vector<Row>{
+           {"nothing happened", {}, after(0.1), whole},
+           {"a large share of the budget was used", {}, after(0.2), fewer},
+           {"the clock ended the tick", {}, after(0.1, whole, 7), fewer},
+           {"a substep waits: it goes on with its time step", {.waits = true}, after(0.95, 13), 13},
+           {"a hand lets go", {.released = true}, after(0.95), whole},
+           {"the thread flies, as after a release", {.node_d = whole + 0.1}, after(0.95), whole},
+           {"a hand is fast", {.hand_d = 1.1}, after(0.95), whole},
+           {"a hand is not fast", {.hand_d = 0.9}, after(0.95), fewer},
+           {"the thread has come down", {.node_d = whole - 0.1}, after(0.95), fewer},
+           {"a substep waits in a thread that flies", {.node_d = whole + 0.1, .waits = true}, after(0.95, 13), whole},
+       })
+    EXPECT_EQ(substeps_of(row.now, row.last, kBudget, kBalanced), row.substeps) << row.why;
 }
 
-TEST(Plan, FineHasMoreSubstepsInEveryCase) {
-  Numerics fine = kBalanced;
+TEST(Substeps, FollowTheSetting) {
+  Numerics fine, fast;
   fine.substeps = fine.max_substeps = 40;
-  const Situation now{.nodes = 154};
-  EXPECT_EQ(plan({}, after(0.0), now, fine).substeps, 40);
-  EXPECT_EQ(plan({}, after(0.95), now, fine).substeps, 20);
+  fast.substeps = 10, fast.max_substeps = 16;
+  EXPECT_EQ(substeps_of({}, after(0.0), kBudget, fine), 40);
+  EXPECT_EQ(substeps_of({}, after(0.95), kBudget, fine), 20);
+  EXPECT_EQ(substeps_of({}, after(0.95), kBudget, fast), 10) << "no fewer than ten";
+  EXPECT_EQ(substeps_of({.released = true}, after(0.0), kBudget, fast), 16);
 }
 
-TEST(Plan, ToleranceGrowsAfterTicksCutShortOnly) {
-  const Situation now{.nodes = 154};
-  Plan p;
-  for (int k = 0; k < 20; ++k) {
-    const double before = p.leniency;
-    p = plan(p, after(0.5, 1), now, kBalanced);
-    EXPECT_GE(p.leniency, before);
-  }
-  EXPECT_EQ(p.leniency, tuning.most_leniency);
-  for (int k = 0; k < 40; ++k) p = plan(p, after(0.5), now, kBalanced);
-  EXPECT_EQ(p.leniency, 1.0);
+TEST(Substeps, NewOnesAndFastMotionNeedANewMatrix) {
+  EXPECT_FALSE(needs_new_matrix({}, 16, 16, kBalanced));
+  EXPECT_TRUE(needs_new_matrix({}, 16, 10, kBalanced));
+  EXPECT_TRUE(needs_new_matrix({.hand_d = 1.1}, 16, 16, kBalanced));
+  EXPECT_FALSE(needs_new_matrix({.hand_d = 1.1, .waits = true}, 16, 16, kBalanced)) << "the substep is continued";
 }
 
-TEST(Plan, PaceIsHalfTheSpeedBetweenTheHands) {
-  EXPECT_DOUBLE_EQ(plan({}, after(0.5), {.apart_m_per_s = 0.4, .nodes = 154}, kBalanced).pace_m_per_s, 0.2);
-  EXPECT_EQ(plan({.pace_m_per_s = 0.2}, after(0.5), {.nodes = 154}, kBalanced).pace_m_per_s, 0.0);
-}
-
-/// An inverse matrix serves for one time step only.
-TEST(Plan, NewTimeStepNeedsANewMatrix) {
-  const Situation now{.nodes = 154};
-  EXPECT_FALSE(plan({}, after(0.2), now, kBalanced).new_matrix);
-  EXPECT_TRUE(plan({}, after(0.95), now, kBalanced).new_matrix);
+TEST(Tolerance, GrowsWithHandsOrThreadAndIsSmallInAThreadThatHardlyMoves) {
+  const Numerics n;
+  const double rest = n.settled_m_per_s;
+  const auto grown = [&](double speed) { return rest + n.settled_share * speed; };
+  EXPECT_DOUBLE_EQ(tolerance(0.2, 0.0, 1.0, n), grown(0.2)) << "hands that part";
+  EXPECT_DOUBLE_EQ(tolerance(0.0, 1.0, 1.0, n), grown(tuning.stir)) << "a thread that moves by itself";
+  EXPECT_DOUBLE_EQ(tolerance(0.2, 1.0, 1.0, n), grown(0.2)) << "the larger of the two";
+  EXPECT_DOUBLE_EQ(tolerance(0.0, 0.0, 1.0, n), rest) << "a thread that is carried along";
+  EXPECT_DOUBLE_EQ(tolerance(0.2, 0.0, 1e-3, n), tuning.creep * 1e-3) << "slow nodes";
+  EXPECT_DOUBLE_EQ(tolerance(0.2, 0.0, 0.0, n), tuning.creep * rest) << "nodes at rest";
 }
 
 TEST(Patience, EndsAndIsWholeForTheNextSubstep) {

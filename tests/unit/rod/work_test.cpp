@@ -43,7 +43,7 @@ Hostile attack(Rod rod, unsigned seed, double ball, double thrown_m_per_s, doubl
   return seen;
 }
 
-long budget_of(const Numerics& numerics, int nodes) { return numerics.budget(nodes, 2.0); }
+long budget_of(const Numerics& numerics, int nodes) { return numerics.budget(nodes); }
 
 TEST(Work, NoStateCostsMoreThanTheBudget) {  // 154 to 2000 nodes, at rest and thrown, hands at up to 100 m/s
   for (const auto& [nodes, ball] : {std::pair{154, 6.0}, {154, 20.0}, {500, 6.0}, {500, 20.0}, {2000, 60.0}}) {
@@ -88,7 +88,7 @@ TEST(Work, SaysWhatItGaveUp) {  // what is given up is time: unconverged substep
   const auto& r = rod.report();
   EXPECT_GT(r.time_lost, 0.0) << rod.contact_set().pairs.size();
   EXPECT_EQ(r.rows_left_out, 0) << r.contacts;
-  EXPECT_LE(rod.report().work, numerics.budget(154, 0.0));
+  EXPECT_LE(rod.report().work, numerics.budget(154));
 }
 
 }  // namespace

@@ -47,26 +47,21 @@ struct Material {
 struct Numerics {
   double tick_s = 1e-3;
   int substeps = tuning.substeps;                   ///< time steps per tick
-  int max_substeps = tuning.substeps;               ///< time steps per tick when a hand is fast, or a thread flies
+  int max_substeps = tuning.substeps;               ///< time steps per tick when the motion is fast (plan.hpp)
   int max_passes = 1 << 30;                         ///< most passes of the sweep solver per substep; as here: no limit
   long work = tuning.work;                          ///< contact budget of a tick, in instructions (work.hpp)
   long work_per_node = tuning.work_per_node;        ///< added to the budget for each node
-  double rush = tuning.rush;                        ///< relative increase of the budget for fast hands
-  long given_work = 0;                              ///< > 0: replaces the whole budget, for any thread and hands
+  long given_work = 0;                              ///< > 0: replaces the whole budget, for any thread
   double settled_m_per_s = tuning.settled_m_per_s;  ///< tolerance: a pass that changes no velocity by more is the last
   double settled_share = tuning.settled_share;      ///< added to it: this times half the hands' relative speed
   double recovery = tuning.recovery;                ///< share of a penetration that a substep removes
   double contact_N_per_m = tuning.contact_N_per_m;  ///< stiffness of a contact
 
-  /// A hand is fast if it moves by more than a thread diameter in a tick (hand_d).
-  [[nodiscard]] static constexpr bool is_fast(double hand_d) noexcept { return hand_d > 1.001; }
-  /// Contact budget of a tick, in instructions: for fast hands 1 + rush times that of slow ones.
-  [[nodiscard]] constexpr long budget(int nodes, double hand_d) const noexcept {
-    if (given_work > 0) return given_work;
-    const auto whole = static_cast<double>(work + work_per_node * nodes);
-    return static_cast<long>((is_fast(hand_d) ? 1.0 + rush : 1.0) * whole);
+  /// Contact budget of a tick, in instructions.
+  [[nodiscard]] constexpr long budget(int nodes) const noexcept {
+    return given_work > 0 ? given_work : work + work_per_node * nodes;
   }
-  LIGATURE_MEMBERS(Numerics, tick_s, substeps, max_substeps, max_passes, work, work_per_node, rush, given_work,
+  LIGATURE_MEMBERS(Numerics, tick_s, substeps, max_substeps, max_passes, work, work_per_node, given_work,
                    settled_m_per_s, settled_share, recovery, contact_N_per_m)
 };
 
