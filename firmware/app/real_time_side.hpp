@@ -39,8 +39,9 @@ class RealTimeSide {
   void end();
 
   [[nodiscard]] bool is_beating() const noexcept { return beating_; }
-  [[nodiscard]] const RigCycle& cycle() const noexcept { return cycle_; }              // valid after end()
-  [[nodiscard]] control::Fault fault() const noexcept { return controller_.fault(); }  // valid after end()
+  [[nodiscard]] const RigCycle& cycle() const noexcept { return cycle_; }               // valid after end()
+  [[nodiscard]] control::Fault fault() const noexcept { return controller_.fault(); }   // valid after end()
+  [[nodiscard]] rt::Culprit culprit() const noexcept { return controller_.culprit(); }  // likewise
 
  private:
   void stay_awake();

@@ -19,6 +19,7 @@
 #include "firmware/app/summary.hpp"
 #include "firmware/platform/make_drives.hpp"
 #include "firmware/telemetry/flight_recorder.hpp"
+#include "firmware/telemetry/in_words.hpp"
 #include "firmware/telemetry/lcm_link.hpp"
 #include "protocol/can/hand_of_bus.hpp"
 
@@ -44,7 +45,7 @@ int fail(const Refusal& refusal) {
 void log(const ligature_msg::event_t& e) {
   if (e.kind == ligature_msg::event_t::KIND_FAULT) {
     spdlog::error("tick {}: {}", e.tick, e.text);
-  } else if (e.kind == ligature_msg::event_t::KIND_REFUSED ||
+  } else if (e.kind == ligature_msg::event_t::KIND_REFUSED || e.kind == ligature_msg::event_t::KIND_WAITS ||
              (e.kind == ligature_msg::event_t::KIND_RECORDER && e.code == 0)) {
     spdlog::warn("tick {}: {}", e.tick, e.text);
   } else if (e.kind != ligature_msg::event_t::KIND_LIMIT) {
@@ -159,7 +160,9 @@ int run_loop(RealTimeSide& side, telemetry::LcmLink& link, telemetry::Telemetry&
   std::fputs(summary(cycle.timing(), cycle.periods(), losses(outlets, recorder)).c_str(), stdout);
   const auto fault = side.fault();
   if (fault == control::Fault::kNone) return 0;
-  return fail({3, "ended in fault " + std::to_string(static_cast<int>(fault)) + ": " + control::name(fault)});
+  const std::string where = telemetry::in_words(side.culprit());
+  return fail({3, "ended in fault " + std::to_string(static_cast<int>(fault)) + ": " + control::name(fault) +
+                      (where.empty() ? "" : ", " + where)});
 }
 
 }  // namespace

@@ -4,6 +4,15 @@
 #include <cmath>
 
 namespace ligature::control {
+namespace {
+
+rt::Culprit hand_alone(std::size_t h) noexcept { return {.hand = static_cast<std::int8_t>(h)}; }
+
+rt::Culprit drive_of(std::size_t h, const rt::HandReading& reading) noexcept {
+  return {static_cast<std::int8_t>(h), reading.bad_joint, reading.drive_error};
+}
+
+}  // namespace
 
 Controller::Controller(const scene::Hands& hands, const Settings& settings) noexcept
     : settings_(settings),
@@ -117,25 +126,27 @@ bool Controller::any_too_fast() const noexcept {
 
 /// The most specific fault of this tick. In the state OFF, while the drives start up, only faults that do not need
 /// running drives count.
-Fault Controller::find_fault(const TickInput& in) const noexcept {
-  for (const auto& reading : in.reading.hand) {
-    if (reading.bus_lost) return Fault::kBusLost;
+Controller::Found Controller::find_fault(const TickInput& in) const noexcept {
+  const auto& hands = in.reading.hand;
+  for (std::size_t h = 0; h < rt::kHands; ++h) {
+    if (hands[h].bus_lost) return {Fault::kBusLost, hand_alone(h)};
   }
   for (std::size_t h = 0; h < rt::kHands; ++h) {
-    const Fault foreign = fault_of(in.reading.hand[h].foreign);
-    if (foreign != Fault::kNone) return foreign;
-    if (torque_[h].is_astray()) return Fault::kTorqueAstray;
+    const Fault foreign = fault_of(hands[h].foreign);
+    if (foreign != Fault::kNone) return {foreign, hand_alone(h)};
+    if (torque_[h].is_astray()) return {Fault::kTorqueAstray, hand_alone(h)};
   }
-  if (!in.thread_finite) return Fault::kPhysicsDiverged;
-  if (last_tick_ >= 0 && in.tick - last_tick_ - 1 >= settings_.watchdog_ticks) return Fault::kOverrun;
-  if (in.thread_late_ticks >= settings_.watchdog_ticks) return Fault::kThreadLate;
-  if (state_ == State::kOff) return Fault::kNone;
+  if (!in.thread_finite) return {Fault::kPhysicsDiverged};
+  if (last_tick_ >= 0 && in.tick - last_tick_ - 1 >= settings_.watchdog_ticks) return {Fault::kOverrun};
+  if (in.thread_late_ticks >= settings_.watchdog_ticks) return {Fault::kThreadLate};
+  if (state_ == State::kOff) return {};
   for (std::size_t h = 0; h < rt::kHands; ++h) {
-    const Fault fault = find_hand_fault(h, in.reading.hand[h]);
-    if (fault != Fault::kNone) return fault;
-    if (loss_[h].is_lossy()) return Fault::kFramesLost;
+    const Fault fault = find_hand_fault(h, hands[h]);
+    const bool is_of_drive = fault == Fault::kTpdoTooOld || fault == Fault::kDriveFault;
+    if (fault != Fault::kNone) return {fault, is_of_drive ? drive_of(h, hands[h]) : hand_alone(h)};
+    if (loss_[h].is_lossy()) return {Fault::kFramesLost, hand_alone(h)};
   }
-  return Fault::kNone;
+  return {};
 }
 
 Fault Controller::find_hand_fault(std::size_t h, const rt::HandReading& reading) const noexcept {
@@ -151,12 +162,17 @@ Fault Controller::find_hand_fault(std::size_t h, const rt::HandReading& reading)
   return Fault::kNone;
 }
 
-bool Controller::drives_are_up(const rt::RigReading& reading) const noexcept {
-  const auto is_up = [&](std::size_t h) {
-    const rt::HandReading& r = reading.hand[h];
-    return age_[h].is_of_this_period() && r.enabled && !r.drive_fault;
-  };
-  return is_up(0) && is_up(1);
+bool Controller::is_up(std::size_t h, const rt::HandReading& reading) const noexcept {
+  return age_[h].is_of_this_period() && reading.enabled && !reading.drive_fault;
+}
+
+/// What keeps the rig in OFF, or in CALIBRATE: the first hand whose drives are not up, or whose pose is impossible.
+rt::Culprit Controller::find_delay(const rt::RigReading& reading) const noexcept {
+  for (std::size_t h = 0; h < rt::kHands && !shutting_down_; ++h) {
+    if (state_ == State::kOff && !is_up(h, reading.hand[h])) return drive_of(h, reading.hand[h]);
+    if (state_ == State::kCalibrate && !hands_[h].is_plausible()) return hand_alone(h);
+  }
+  return {};
 }
 
 void Controller::step_state(const TickInput& in) noexcept {
@@ -164,12 +180,14 @@ void Controller::step_state(const TickInput& in) noexcept {
     for (HandControl& h : hands_) h.need_new_press();
     if (!reset_requested_ || needs_restart(fault_)) return;
     fault_ = Fault::kNone;
+    culprit_ = {};
     for (HandControl& h : hands_) h.restart_account();
     state_ = next(state_, Event::kReset);
     return;
   }
-  if (const Fault fault = find_fault(in); fault != Fault::kNone) {
-    fault_ = fault;
+  if (const Found found = find_fault(in); found.fault != Fault::kNone) {
+    fault_ = found.fault;
+    culprit_ = found.culprit;
     armed_ = false;
     state_ = next(state_, Event::kFault);
     return;
@@ -179,13 +197,14 @@ void Controller::step_state(const TickInput& in) noexcept {
   const bool plausible = state_ == State::kCalibrate && std::ranges::all_of(hands_, &HandControl::is_plausible);
   plausible_ticks_ = plausible ? plausible_ticks_ + 1 : 0;
   if (const auto event = find_event(in.reading, brakes)) state_ = next(state_, *event);
+  culprit_ = find_delay(in.reading);
 }
 
 std::optional<Event> Controller::find_event(const rt::RigReading& reading, bool brakes) const noexcept {
   const bool push = armed_ && !shutting_down_;
   switch (state_) {
     case State::kOff:
-      if (!shutting_down_ && drives_are_up(reading)) return Event::kDrivesUp;
+      if (!shutting_down_ && is_up(0, reading.hand[0]) && is_up(1, reading.hand[1])) return Event::kDrivesUp;
       break;
     case State::kCalibrate:
       if (shutting_down_) return Event::kPowerDown;

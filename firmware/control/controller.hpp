@@ -12,6 +12,7 @@
 #include "firmware/control/state_machine.hpp"
 #include "firmware/control/torque_watch.hpp"
 #include "firmware/rt/command.hpp"
+#include "firmware/rt/culprit.hpp"
 #include "firmware/rt/period.hpp"
 #include "protocol/scene/scene.hpp"
 
@@ -70,6 +71,8 @@ class Controller {
 
   [[nodiscard]] State state() const noexcept { return state_; }
   [[nodiscard]] Fault fault() const noexcept { return fault_; }
+  /// What the present fault is about. In OFF and CALIBRATE: what keeps the rig from leaving this state.
+  [[nodiscard]] const rt::Culprit& culprit() const noexcept { return culprit_; }
   [[nodiscard]] bool armed() const noexcept { return armed_; }
   [[nodiscard]] const HandState& hand(std::size_t h) const noexcept { return hands_[h].state(); }
 
@@ -77,9 +80,14 @@ class Controller {
   [[nodiscard]] std::array<physics::ToolInput, rt::kHands> tools() const noexcept;
 
  private:
-  [[nodiscard]] Fault find_fault(const TickInput& in) const noexcept;
+  struct Found {
+    Fault fault = Fault::kNone;
+    rt::Culprit culprit{};
+  };
+  [[nodiscard]] Found find_fault(const TickInput& in) const noexcept;
   [[nodiscard]] Fault find_hand_fault(std::size_t h, const rt::HandReading& reading) const noexcept;
-  [[nodiscard]] bool drives_are_up(const rt::RigReading& reading) const noexcept;
+  [[nodiscard]] bool is_up(std::size_t h, const rt::HandReading& reading) const noexcept;
+  [[nodiscard]] rt::Culprit find_delay(const rt::RigReading& reading) const noexcept;
   void step_state(const TickInput& in) noexcept;
   /// Transition event of this tick, other than a fault.
   [[nodiscard]] std::optional<Event> find_event(const rt::RigReading& reading, bool brakes) const noexcept;
@@ -101,6 +109,7 @@ class Controller {
   double scale_goal_, scale_step_ = 0.0;
   State state_ = State::kOff;
   Fault fault_ = Fault::kNone;
+  rt::Culprit culprit_;
   bool armed_;
   bool reset_requested_ = false;
   bool stop_requested_ = false;  // all torques are zero in this tick, even above the step limit

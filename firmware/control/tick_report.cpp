@@ -34,6 +34,7 @@ void report(const Controller& controller, rt::TickRecord& record) noexcept {
   record.state = static_cast<std::int8_t>(controller.state());
   record.fault = static_cast<std::int16_t>(controller.fault());
   record.armed = controller.armed();
+  record.culprit = controller.culprit();
   const auto tools = controller.tools();
   for (std::size_t h = 0; h < rt::kHands; ++h) {
     report(controller.hand(h), h, record);

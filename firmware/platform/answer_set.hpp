@@ -68,6 +68,10 @@ class AnswerSet {
   }
   [[nodiscard]] std::int32_t age_ticks() const noexcept { return age_ticks_; }
   [[nodiscard]] bool is_valid() const noexcept { return valid_; }  ///< there has been a set
+  /// Whether this period's set is incomplete, and this part is among the missing ones.
+  [[nodiscard]] bool is_missing(std::size_t part) const noexcept {
+    return age_ticks_ > 0 && (arrived_ & 1U << part) == 0;
+  }
 
  private:
   static constexpr int kQuiet = 2;

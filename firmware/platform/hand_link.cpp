@@ -151,9 +151,12 @@ rt::HandReading HandLink::reading() const noexcept {
     const Node& node = nodes_[j];
     const State state = node.state();
     r.q_rad[j] = node.latest.position_counts * rad_per_count_;
-    r.enabled = r.enabled && state == State::kOperationEnabled;
-    r.drive_fault = r.drive_fault || node.emergency != can::emcy::kNoError || !node.operational ||
-                    (valid_ && (state == State::kFault || state == State::kFaultReactionActive));
+    const bool is_on = state == State::kOperationEnabled, is_missing = age_ticks_ > 0 && (arrived_ & 1U << j) == 0;
+    const bool has_failed = node.emergency != can::emcy::kNoError || !node.operational ||
+                            (valid_ && (state == State::kFault || state == State::kFaultReactionActive));
+    r.enabled = r.enabled && is_on;
+    r.drive_fault = r.drive_fault || has_failed;
+    if (!is_on || is_missing || has_failed) r.blame(j, node.emergency);
     // Only drives with Ligature's own profile (docs/wire.md) use this statusword bit for a wrong torque. Other drives
     // report the torque of every joint instead.
     r.torque_astray =

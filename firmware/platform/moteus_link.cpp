@@ -121,9 +121,7 @@ void MoteusLink::take_part(std::size_t part) noexcept {
 }
 
 bool MoteusLink::is_on() const noexcept {
-  return phase_ != Phase::kOff && std::ranges::all_of(nodes_, [](const Node& node) {
-           return node.was_on && !node.has_failed && node.confirmed == kConfirmed;
-         });
+  return phase_ != Phase::kOff && std::ranges::all_of(nodes_, [](const Node& node) { return node.is_on(); });
 }
 
 rt::HandReading MoteusLink::reading() const noexcept {
@@ -144,7 +142,9 @@ rt::HandReading MoteusLink::reading() const noexcept {
     r.torque_astray = r.torque_astray ||
                       (r.valid && moteus::is(used_[j].mode, Mode::kPosition) && !std::isfinite(used_[j].torque_Nm));
     r.torque_limited[j] = moteus::is_limit(used_[j].fault);
-    r.drive_fault = r.drive_fault || node.has_failed || node.is_lost || node.tells_unasked;
+    const bool has_failed = node.has_failed || node.is_lost || node.tells_unasked;
+    r.drive_fault = r.drive_fault || has_failed;
+    if (has_failed || !node.is_on() || answers_.is_missing(j)) r.blame(j, node.error());
   }
   return r;
 }

@@ -26,6 +26,7 @@ class MoteusLink {
   /// Drives that shall be off are told so in each period, also after they have said it.
   std::array<std::int16_t, rt::kJoints> write(const rt::HandCommand& command) noexcept;
 
+  static constexpr unsigned kConfirmed = (1U << moteus::kExtras) - 1U;
   struct Node {
     std::optional<moteus::Reply> last;  ///< the newest answer
     std::optional<float> home;          ///< what the drive knows of its position, as it said at first
@@ -37,6 +38,8 @@ class MoteusLink {
     bool is_lost = false;               ///< it no longer knows its position as at first: until a restart
     bool tells_unasked = false;         ///< more answers than requests since the last write()
     bool asked_when_off = false, asked_when_on = false;  ///< the last query came after the stop, or the torque
+    [[nodiscard]] bool is_on() const noexcept { return was_on && !has_failed && confirmed == kConfirmed; }
+    [[nodiscard]] std::uint32_t error() const noexcept { return last ? static_cast<std::uint32_t>(last->fault) : 0; }
   };
   [[nodiscard]] const std::array<Node, rt::kJoints>& nodes() const noexcept { return nodes_; }
   void forget_off() noexcept;  ///< the drives have to say again that they are off
@@ -46,7 +49,6 @@ class MoteusLink {
  private:
   static constexpr int kPatience = 500;  // periods until a drive is on
   static constexpr int kPause = 50;      // periods until the next trial
-  static constexpr unsigned kConfirmed = (1U << moteus::kExtras) - 1U;
   enum class Phase : std::uint8_t { kOff, kSwitching, kOn };
 
   bool send(const can::Frame& frame) noexcept;

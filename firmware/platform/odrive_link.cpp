@@ -132,8 +132,11 @@ rt::HandReading OdriveLink::reading() const noexcept {
   for (std::size_t j = 0; j < rt::kJoints; ++j) {
     const Node& node = nodes_[j];
     r.q_rad[j] = rev_[j] * kRad_per_rev;
-    r.enabled = r.enabled && node.is_on() && !node.was_off;
-    r.drive_fault = r.drive_fault || node.heartbeat.error != 0 || node.had_error || node.tells_unasked;
+    const bool is_on = node.is_on() && !node.was_off;
+    const bool has_failed = node.heartbeat.error != 0 || node.had_error || node.tells_unasked;
+    r.enabled = r.enabled && is_on;
+    r.drive_fault = r.drive_fault || has_failed;
+    if (has_failed || !is_on || answers_.is_missing(j)) r.blame(j, node.heartbeat.error);
   }
   return r;
 }

@@ -46,6 +46,15 @@ struct HandReading {
   /// Share of the previous period in which this hand's bus was busy, stuff bits included
   float bus_load = 0.0F;
   std::int32_t age_ticks = 0;  ///< periods since the last complete set; 0: sampled at this period's SYNC
+  /// For messages only: a joint whose drive is in a fault, is not enabled or did not answer in this period; -1: none.
+  std::int8_t bad_joint = -1;
+  std::uint32_t drive_error = 0;  ///< error code that this drive sent; 0: none
+
+  /// Notes such a joint. The first one stays, unless only a later one has sent an error code.
+  void blame(std::size_t joint, std::uint32_t error) noexcept {
+    if (bad_joint >= 0 && (error == 0 || drive_error != 0)) return;
+    bad_joint = static_cast<std::int8_t>(joint), drive_error = error;
+  }
 };
 
 struct RigReading {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "firmware/rt/culprit.hpp"
 #include "firmware/rt/payload.hpp"
 #include "firmware/rt/rig_io.hpp"
 
@@ -56,7 +57,8 @@ using Triple = std::array<double, 3>;
 /// a waiting request and of the newest request.
 inline constexpr std::size_t kThreadSteps = 3;
 
-/// One control period; fields, units and frames as in protocol/lcm/tick_t.lcm, plus `armed`.
+/// One control period; fields, units and frames as in protocol/lcm/tick_t.lcm, plus
+/// `armed` and `culprit`, which go out with other messages (status_t, event_t).
 struct TickRecord {
   std::int64_t tick = 0;
   std::int64_t scheduled_ns = 0;
@@ -70,6 +72,7 @@ struct TickRecord {
   std::int8_t state = 0;
   std::int16_t fault = 0;
   bool armed = false;
+  Culprit culprit;  ///< of the fault; in OFF and CALIBRATE: what is waited for
 
   std::array<Triple, kHands> p_WT_m{};
   std::array<Triple, kHands> v_WT_m_per_s{};

@@ -132,7 +132,7 @@ class Matrix:
         self.assertLessEqual(int(zero_by_fault[2]), self.most_ticks_by_fault, "ticks until a fault has removed all torque")
         _, errors = firmware.communicate(timeout=BOUND_S)
         self.assertEqual(firmware.returncode, 3, errors)
-        self.assertIn("fault 12: drive fault", errors)
+        self.assertRegex(errors, r"fault 12: drive fault, left hand, (waist \(node 1\)|shoulder \(node 2\)|forearm \(node 3\))")
         for line in self.lacks:
             self.assertIn(line, errors)
 

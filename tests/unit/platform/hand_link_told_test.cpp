@@ -129,6 +129,31 @@ TEST_F(HandLinkTest, ADriveOnItsWayIntoAFaultIsInOne) {
   EXPECT_TRUE(link.reading().drive_fault);
 }
 
+TEST_F(HandLinkTest, TheDriveInTroubleIsNamed) {
+  EXPECT_EQ(period().bad_joint, -1);
+  for (std::size_t bad = 0; bad < 3; ++bad) {
+    link.send_sync();
+    for (std::size_t j = 0; j < 3; ++j) answer(j, j == bad ? State::kSwitchedOn : State::kOperationEnabled);
+    link.drain();
+    EXPECT_EQ(link.reading().bad_joint, static_cast<int>(bad)) << "not enabled";
+    EXPECT_EQ(link.reading().drive_error, 0U);
+    EXPECT_EQ(period().bad_joint, -1);
+    link.send_sync();
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (j != bad) answer(j);
+    }
+    link.drain();
+    EXPECT_EQ(link.reading().bad_joint, static_cast<int>(bad)) << "no answer";
+    bus.inbox.push_back(can::encode(can::Heartbeat{kNodes[bad], can::NmtState::kStopped}));
+    EXPECT_EQ(period().bad_joint, static_cast<int>(bad)) << "not operational";
+    bus.inbox.push_back(can::encode(can::Heartbeat{kNodes[bad], can::NmtState::kOperational}));
+    EXPECT_EQ(period().bad_joint, -1);
+  }
+  bus.inbox.push_back(can::encode(can::Emergency{kNodes[1], can::emcy::kRpdoTimeout, can::emcy::kGenericBit}));
+  EXPECT_EQ(period().bad_joint, 1);
+  EXPECT_EQ(period().drive_error, std::uint32_t{can::emcy::kRpdoTimeout});
+}
+
 /// An emergency is cleared only by the request kEnable to a drive that is enabled, not by other requests.
 TEST_F(HandLinkTest, AnEmergencyIsForgottenByEnablingOnly) {
   period();

@@ -74,7 +74,9 @@ TEST_F(Moteus, AnyOtherModeIsAFaultAtOnce) {
     switch_on();
     (void)period(DriveRequest::kOperate, 0.3);
     mode[1] = other;
-    EXPECT_TRUE(period(DriveRequest::kOperate, 0.3).drive_fault) << int{other};
+    const auto r = period(DriveRequest::kOperate, 0.3);
+    EXPECT_TRUE(r.drive_fault) << int{other};
+    EXPECT_EQ(r.bad_joint, 1) << int{other};
     EXPECT_TRUE(all_stopped()) << int{other};
     mode[1] = kOn;  // as if nothing had been
     EXPECT_FALSE(period(DriveRequest::kOperate, 0.3).enabled) << int{other};
@@ -115,6 +117,8 @@ TEST_F(Moteus, FaultsAreFaultsAndLimitsAreLimits) {
     const auto r = period(DriveRequest::kOperate, 0.1);
     const bool is_limit = number >= 96 && number <= 103;
     EXPECT_EQ(r.drive_fault, !is_limit) << number;
+    EXPECT_EQ(r.bad_joint, is_limit ? -1 : 2) << number;
+    EXPECT_EQ(r.drive_error, is_limit ? 0U : static_cast<unsigned>(number));
     EXPECT_EQ(r.torque_limited[2], is_limit) << number;
     EXPECT_FALSE(r.torque_limited[1]);
     fault[2] = 0;

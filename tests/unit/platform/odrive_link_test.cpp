@@ -184,7 +184,10 @@ TEST_F(Odrive, ADrivesErrorAndItsSilenceAreFaults) {
   beat_all(kIsOn);
   EXPECT_FALSE(period().drive_fault);
   beat(2, kIsIdle, odrive::kWatchdogExpired);
-  EXPECT_TRUE(period().drive_fault);
+  const auto r = period();
+  EXPECT_TRUE(r.drive_fault);
+  EXPECT_EQ(r.bad_joint, 1);
+  EXPECT_EQ(r.drive_error, std::uint32_t{odrive::kWatchdogExpired});
   EXPECT_FALSE(link.reading().enabled);
   link.write({{}, rt::DriveRequest::kOperate});
   beat_all(kIsOn);

@@ -1,5 +1,6 @@
 // The messages that telemetry sends for given tick records, with time as an argument and a sink that stores everything.
 #include "firmware/telemetry/telemetry.hpp"
+#include "firmware/telemetry/in_words.hpp"
 
 #include <gtest/gtest.h>
 
@@ -196,8 +197,61 @@ TEST_F(TelemetryTest, EventsAreReadOutOfTheRecords) {
                                event_t::KIND_RELEASE};
   for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(sink.events[i].kind, kinds[i]) << i;
   EXPECT_EQ(sink.events[0].text, "fault 11: broken");
+  EXPECT_EQ(sink.events[0].hand, -1);
   EXPECT_EQ(sink.events[3].code, 17);
   EXPECT_EQ(sink.events[4].tick, 3);
+}
+
+TEST(InWords, NamesHandDriveAndError) {
+  EXPECT_EQ(in_words(rt::Culprit{}), "");
+  EXPECT_EQ(in_words(rt::Culprit{.hand = 1}), "right hand");
+  EXPECT_EQ(in_words(rt::Culprit{0, 2, 0}), "left hand, forearm (node 3)");
+  EXPECT_EQ(in_words(rt::Culprit{0, 0, 0x3210}), "left hand, waist (node 1), error code 0x3210");
+}
+
+TEST_F(TelemetryTest, AFaultNamesItsHandItsDriveAndTheDrivesError) {
+  push(0);
+  record.fault = 12;
+  record.culprit = {1, 2, 0x3210};
+  push(1);
+  telemetry.step(at(5));
+  ASSERT_EQ(sink.events.size(), 1U);
+  EXPECT_EQ(sink.events[0].text, "fault 12: broken, right hand, forearm (node 3), error code 0x3210");
+  EXPECT_EQ(sink.events[0].hand, 1);
+}
+
+/// A rig that stays in OFF or CALIBRATE says why after 3 s, and then every 30 s; not if it leaves the state before.
+TEST_F(TelemetryTest, ARigThatWaitsSaysWhatItWaitsFor) {
+  record.culprit = {0, 1, 0};
+  const auto until = [&](std::int64_t& tick, std::int64_t end) {
+    for (; tick < end; ++tick) {
+      push(tick);
+      if (tick % 10 == 0) telemetry.step(at(tick));
+    }
+    telemetry.step(at(tick));
+  };
+  std::int64_t tick = 0;
+  until(tick, 3000);
+  EXPECT_TRUE(sink.events.empty());
+  until(tick, 32'999);
+  ASSERT_EQ(sink.events.size(), 1U);
+  EXPECT_EQ(sink.events[0].kind, ligature_msg::event_t::KIND_WAITS);
+  EXPECT_EQ(sink.events[0].tick, 3000);
+  EXPECT_EQ(sink.events[0].hand, 0);
+  EXPECT_TRUE(sink.events[0].text.ends_with(" for 3 s, waits for a drive: left hand, shoulder (node 2)"))
+      << sink.events[0].text;
+  record.state = ligature_msg::tick_t::STATE_CALIBRATE;
+  record.culprit = {.hand = 1};
+  until(tick, 40'000);
+  ASSERT_EQ(sink.events.size(), 3U) << "the change of state, and a word 3 s later";
+  EXPECT_EQ(sink.events[2].tick, 32'999 + 3000);
+  EXPECT_EQ(sink.events[2].code, ligature_msg::tick_t::STATE_CALIBRATE);
+  EXPECT_TRUE(sink.events[2].text.ends_with(" for 3 s, waits for a possible pose: right hand")) << sink.events[2].text;
+  until(tick, 70'000);
+  EXPECT_EQ(sink.events.size(), 4U) << "again after 30 s";
+  record.state = ligature_msg::tick_t::STATE_IDLE;
+  until(tick, 80'000);
+  EXPECT_EQ(sink.events.size(), 5U) << "in any other state nothing is waited for";
 }
 
 TEST_F(TelemetryTest, JawsThatCloseOnNothingAreAnEvent) {

@@ -1,0 +1,15 @@
+#pragma once
+// The part of the rig that a fault is about, or that a rig in the state OFF or CALIBRATE waits for.
+
+#include <cstdint>
+
+namespace ligature::rt {
+
+struct Culprit {
+  std::int8_t hand = -1;    ///< 0 left, 1 right, -1: neither, or both
+  std::int8_t joint = -1;   ///< whose drive it is: 0 waist, 1 shoulder, 2 forearm; -1: no drive of its own
+  std::uint32_t error = 0;  ///< error code that the drive sent; 0: none
+  bool operator==(const Culprit&) const = default;
+};
+
+}  // namespace ligature::rt

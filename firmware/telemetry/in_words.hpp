@@ -1,0 +1,27 @@
+#pragma once
+// Words for the part of the rig that a message is about.
+
+#include <array>
+#include <cstdio>
+#include <string>
+
+#include "firmware/rt/culprit.hpp"
+#include "firmware/rt/rig_io.hpp"
+
+namespace ligature::telemetry {
+
+/// In words, such as "left hand, shoulder (node 2), error code 0x3210"; empty if there is no hand.
+[[nodiscard]] inline std::string in_words(const rt::Culprit& c) {
+  static constexpr std::array kHandWords{"left hand", "right hand"};
+  static constexpr std::array<const char*, rt::kJoints> kJointWords{"waist (node 1)", "shoulder (node 2)",
+                                                                    "forearm (node 3)"};
+  if (c.hand < 0) return {};
+  std::string text = kHandWords[static_cast<std::size_t>(c.hand)];
+  if (c.joint >= 0) text += std::string(", ") + kJointWords[static_cast<std::size_t>(c.joint)];
+  if (c.error == 0) return text;
+  std::array<char, 32> code{};
+  std::snprintf(code.data(), code.size(), ", error code 0x%04X", static_cast<unsigned>(c.error));
+  return text + code.data();
+}
+
+}  // namespace ligature::telemetry
