@@ -68,9 +68,9 @@ class AnswerSet {
   }
   [[nodiscard]] std::int32_t age_ticks() const noexcept { return age_ticks_; }
   [[nodiscard]] bool is_valid() const noexcept { return valid_; }  ///< there has been a set
-  /// Whether this period's set is incomplete, and this part is among the missing ones.
+  /// Whether the answer of this part is missing: from this period's set or, while nobody is asked, to the last request.
   [[nodiscard]] bool is_missing(std::size_t part) const noexcept {
-    return age_ticks_ > 0 && (arrived_ & 1U << part) == 0;
+    return age_ticks_ > 0 && ((quiet_ > 0 ? outstanding_ : ~arrived_) >> part & 1U) != 0;
   }
 
  private:

@@ -156,7 +156,9 @@ rt::HandReading HandLink::reading() const noexcept {
                             (valid_ && (state == State::kFault || state == State::kFaultReactionActive));
     r.enabled = r.enabled && is_on;
     r.drive_fault = r.drive_fault || has_failed;
-    if (!is_on || is_missing || has_failed) r.blame(j, node.emergency);
+    if (!is_on) r.blame(j, rt::Trouble::kIsOff, node.emergency);
+    if (is_missing) r.blame(j, rt::Trouble::kIsSilent, node.emergency);
+    if (has_failed) r.blame(j, rt::Trouble::kHasFailed, node.emergency);
     // Only drives with Ligature's own profile (docs/wire.md) use this statusword bit for a wrong torque. Other drives
     // report the torque of every joint instead.
     r.torque_astray =
@@ -167,6 +169,8 @@ rt::HandReading HandLink::reading() const noexcept {
     else if (valid_)
       r.torque_Nm[j] = node.latest.torque_permille * Nm_per_permille_;
   }
+  if (age_ticks_ > 0 && (complete_ & ~arrived_ & kInputsPart) != 0)
+    r.blame(rt::HandReading::kButtonModule, rt::Trouble::kIsSilent);
   tell_buttons(r);
   return r;
 }

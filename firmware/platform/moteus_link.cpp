@@ -144,8 +144,11 @@ rt::HandReading MoteusLink::reading() const noexcept {
     r.torque_limited[j] = moteus::is_limit(used_[j].fault);
     const bool has_failed = node.has_failed || node.is_lost || node.tells_unasked;
     r.drive_fault = r.drive_fault || has_failed;
-    if (has_failed || !node.is_on() || answers_.is_missing(j)) r.blame(j, node.error());
+    if (!node.is_on()) r.blame(j, rt::Trouble::kIsOff, node.error());
+    if (answers_.is_missing(j)) r.blame(j, rt::Trouble::kIsSilent, node.error());
+    if (has_failed) r.blame(j, rt::Trouble::kHasFailed, node.error());
   }
+  if (answers_.is_missing(AnswerSet::kButtons)) r.blame(rt::HandReading::kButtonModule, rt::Trouble::kIsSilent);
   return r;
 }
 

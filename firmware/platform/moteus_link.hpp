@@ -39,7 +39,9 @@ class MoteusLink {
     bool tells_unasked = false;         ///< more answers than requests since the last write()
     bool asked_when_off = false, asked_when_on = false;  ///< the last query came after the stop, or the torque
     [[nodiscard]] bool is_on() const noexcept { return was_on && !has_failed && confirmed == kConfirmed; }
-    [[nodiscard]] std::uint32_t error() const noexcept { return last ? static_cast<std::uint32_t>(last->fault) : 0; }
+    [[nodiscard]] std::uint32_t error() const noexcept {
+      return last && !moteus::is_limit(last->fault) ? static_cast<std::uint32_t>(last->fault) : 0;
+    }
   };
   [[nodiscard]] const std::array<Node, rt::kJoints>& nodes() const noexcept { return nodes_; }
   void forget_off() noexcept;  ///< the drives have to say again that they are off

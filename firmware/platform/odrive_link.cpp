@@ -37,7 +37,7 @@ void OdriveLink::request() noexcept {
   foreign_periods_ = std::max(foreign_periods_ - 1, 0);
   for (Node& node : nodes_) {
     node.silent = std::min(node.silent + 1, kMany);
-    was_away_ = was_away_ || node.silent > kMissedBeats * profile_.heartbeat_ms;
+    node.was_away = node.was_away || node.silent > kMissedBeats * profile_.heartbeat_ms;
   }
   if (answers_.begin_period(may_ask_)) ask_all();
 }
@@ -128,16 +128,19 @@ rt::HandReading OdriveLink::reading() const noexcept {
   r.age_ticks = answers_.age_ticks();
   r.enabled = r.valid;
   buttons_.tell(r);
-  r.drive_fault = was_away_;
   for (std::size_t j = 0; j < rt::kJoints; ++j) {
     const Node& node = nodes_[j];
     r.q_rad[j] = rev_[j] * kRad_per_rev;
     const bool is_on = node.is_on() && !node.was_off;
-    const bool has_failed = node.heartbeat.error != 0 || node.had_error || node.tells_unasked;
+    const bool has_failed = node.heartbeat.error != 0 || node.had_error || node.tells_unasked || node.was_away;
     r.enabled = r.enabled && is_on;
     r.drive_fault = r.drive_fault || has_failed;
-    if (has_failed || !is_on || answers_.is_missing(j)) r.blame(j, node.heartbeat.error);
+    const auto error = node.heartbeat.error;
+    if (!is_on) r.blame(j, rt::Trouble::kIsOff, error);
+    if (answers_.is_missing(j)) r.blame(j, rt::Trouble::kIsSilent, error);
+    if (has_failed) r.blame(j, rt::Trouble::kHasFailed, error);
   }
+  if (answers_.is_missing(AnswerSet::kButtons)) r.blame(rt::HandReading::kButtonModule, rt::Trouble::kIsSilent);
   return r;
 }
 
@@ -154,7 +157,7 @@ std::array<std::int16_t, rt::kJoints> OdriveLink::write(const rt::HandCommand& c
   // Another controller that comes while a fault is latched changes no request, but must find the drives stopped.
   const bool stops = command.request == rt::DriveRequest::kStop || foreign_ != rt::Foreign::kNone;
   const bool are_unsure = off_periods_ > 0 && !may_ask_;  // a torque could feed a drive that has not switched off
-  if (stops || command.request == rt::DriveRequest::kHold || was_away_ || are_unsure) {
+  if (stops || command.request == rt::DriveRequest::kHold || was_away() || are_unsure) {
     switch_off(stops);
     return sent;
   }

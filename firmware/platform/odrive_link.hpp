@@ -2,6 +2,7 @@
 // Cyclic traffic of one hand with ODrive drives: remote frames out, estimates and buttons in, torques out. A torque
 // acts when it arrives; there is no SYNC.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -34,6 +35,7 @@ class OdriveLink {
     bool was_off = false;            ///< likewise
     bool answers = false;            ///< it has sent its position when asked
     bool tells_unasked = false;      ///< it has sent its position more often; in operation since the last write()
+    bool was_away = false;           ///< it was silent for too long: it may have started anew, untested
     bool is_new = false;             ///< its software is supported
     std::optional<float> target_Nm;  ///< the torque that it aims at, as told since forget_targets()
     [[nodiscard]] bool is_on() const noexcept { return heartbeat.state == odrive::kClosedLoop; }
@@ -44,7 +46,9 @@ class OdriveLink {
   [[nodiscard]] bool has_samples() const noexcept { return answers_.is_valid(); }
   [[nodiscard]] rt::Foreign foreign() const noexcept { return foreign_; }
   /// Whether a drive's heartbeat has stayed away. The drives then stay off until the controller is started again.
-  [[nodiscard]] bool was_away() const noexcept { return was_away_; }
+  [[nodiscard]] bool was_away() const noexcept {
+    return std::ranges::any_of(nodes_, [](const Node& node) { return node.was_away; });
+  }
   /// Whether the bus has refused a frame since the start.
   [[nodiscard]] bool has_refused() const noexcept { return has_refused_; }
   bool send(const can::Frame& frame) noexcept;
@@ -75,7 +79,6 @@ class OdriveLink {
   AnswerSet answers_;
   ButtonModule buttons_;
   bool has_refused_ = false;
-  bool was_away_ = false;  // a drive was silent for too long. It may have started anew, untested
   rt::Foreign foreign_ = rt::Foreign::kNone;
   int off_periods_ = 0;       // in a row, in which the drives should be off
   int silent_periods_ = 0;    // that are left of a silence in which the watchdog of a drive that does not obey runs out

@@ -21,6 +21,14 @@ enum class Foreign : std::uint8_t {
   kObject,   ///< an SDO request
 };
 
+/// What is wrong with a drive, the worst last.
+enum class Trouble : std::uint8_t {
+  kNone,
+  kIsOff,     ///< not enabled
+  kIsSilent,  ///< its part of this period's samples has not come
+  kHasFailed,
+};
+
 /// State of one hand at the last complete set of joint messages.
 struct HandReading {
   static constexpr double kNotTold = std::numeric_limits<double>::quiet_NaN();
@@ -46,14 +54,17 @@ struct HandReading {
   /// Share of the previous period in which this hand's bus was busy, stuff bits included
   float bus_load = 0.0F;
   std::int32_t age_ticks = 0;  ///< periods since the last complete set; 0: sampled at this period's SYNC
-  /// For messages only: a joint whose drive is in a fault, is not enabled or did not answer in this period; -1: none.
+  /// For messages only: the joint whose drive is in the worst trouble; kButtonModule: the button module; -1: none.
   std::int8_t bad_joint = -1;
+  Trouble trouble = Trouble::kNone;
   std::uint32_t drive_error = 0;  ///< error code that this drive sent; 0: none
+  static constexpr std::size_t kButtonModule = kJoints;
 
-  /// Notes such a joint. The first one stays, unless only a later one has sent an error code.
-  void blame(std::size_t joint, std::uint32_t error) noexcept {
-    if (bad_joint >= 0 && (error == 0 || drive_error != 0)) return;
-    bad_joint = static_cast<std::int8_t>(joint), drive_error = error;
+  /// Notes trouble of a joint's drive or of the button module. The worst one stays, and of equal ones the first with an
+  /// error code, or the first.
+  void blame(std::size_t joint, Trouble what, std::uint32_t error = 0) noexcept {
+    if (what < trouble || (what == trouble && (error == 0 || drive_error != 0))) return;
+    bad_joint = static_cast<std::int8_t>(joint), trouble = what, drive_error = error;
   }
 };
 

@@ -9,7 +9,7 @@ namespace ligature::telemetry {
 namespace {
 
 constexpr const char* kHandNames[] = {"left", "right"};
-constexpr int kLastStateThatWaits = ligature_msg::tick_t::STATE_CALIBRATE;  // STATE_OFF is the other one
+constexpr int kOff = ligature_msg::tick_t::STATE_OFF, kCalibrate = ligature_msg::tick_t::STATE_CALIBRATE;
 
 ligature_msg::event_t event(std::int64_t tick, std::int8_t kind, std::int8_t hand, std::int32_t code,
                             std::string text) {
@@ -27,11 +27,11 @@ ligature_msg::event_t event(std::int64_t tick, std::int8_t kind, std::int8_t han
 /// What the rig waits for in OFF or CALIBRATE, if it is time to say so: after kFirstWord, then every kNextWord.
 std::string EventFinder::delay(const rt::TickRecord& r) {
   if (r.state != last_.state) since_tick_ = r.tick, next_word_tick_ = r.tick + kFirstWord;
-  const bool waits = r.state <= kLastStateThatWaits && r.culprit.hand >= 0;
+  const bool waits = (r.state == kOff || r.state == kCalibrate) && r.culprit.hand >= 0;
   if (!waits || r.tick < next_word_tick_) return {};
   next_word_tick_ = r.tick + kNextWord;
   return std::string(names_.state(r.state)) + " for " + std::to_string((r.tick - since_tick_) / kTicksPerSecond) +
-         (r.state == 0 ? " s, waits for a drive: " : " s, waits for a possible pose: ") + in_words(r.culprit);
+         (r.state == kOff ? " s, waits for: " : " s, because its angles are no possible pose: ") + in_words(r.culprit);
 }
 
 std::vector<ligature_msg::event_t> EventFinder::next(const rt::TickRecord& r) {

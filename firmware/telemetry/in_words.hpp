@@ -13,8 +13,7 @@ namespace ligature::telemetry {
 /// In words, such as "left hand, shoulder (node 2), error code 0x3210"; empty if there is no hand.
 [[nodiscard]] inline std::string in_words(const rt::Culprit& c) {
   static constexpr std::array kHandWords{"left hand", "right hand"};
-  static constexpr std::array<const char*, rt::kJoints> kJointWords{"waist (node 1)", "shoulder (node 2)",
-                                                                    "forearm (node 3)"};
+  static constexpr std::array kJointWords{"waist (node 1)", "shoulder (node 2)", "forearm (node 3)", "button module"};
   if (c.hand < 0) return {};
   std::string text = kHandWords[static_cast<std::size_t>(c.hand)];
   if (c.joint >= 0) text += std::string(", ") + kJointWords[static_cast<std::size_t>(c.joint)];

@@ -35,7 +35,7 @@ Tightening pulled(const char* scene, double speed, const std::vector<std::string
   }
   return pull;
 }
-/// Three quarters of the contact budget of `balanced`, as a weak machine may have.
+/// 72 % of the contact budget of `balanced`, as a weak machine may have.
 const std::vector<std::string> kSmallBudget{"suture.work_instructions=4685000"};
 
 Tightening pulled(const char* scene, double speed) {
@@ -98,7 +98,8 @@ TEST(Labour, IsSharedFairly) {
   for (const double speed : speeds(8, 0.161, 0.233, 604)) {
     double sum = 0.0;
     int ticks = 0;
-    pulled(kSurgeons, speed, kSmallBudget, [&](const RodSimulation& sim) { sum += sim.rod().report().time_lost, ++ticks; });
+    pulled(kSurgeons, speed, kSmallBudget,
+           [&](const RodSimulation& sim) { sum += sim.rod().report().time_lost, ++ticks; });
     lost += sum / ticks / 8;
   }
   RecordProperty("lost", std::to_string(lost));
@@ -138,8 +139,8 @@ Tightening held(double speed) {
   return pull;
 }
 
-// Contact work of a knot at rest, in instructions per tick; the small budget allows 4.7 million. In 88 holds the mean is 1.9
-// million and the standard deviation 0.9 million, so the mean of 24 holds is above 2.8 million in about one of a
+// Contact work of a knot at rest, in instructions per tick; the small budget allows 4.7 million. In 88 holds the mean
+// is 1.9 million and the standard deviation 0.9 million, so the mean of 24 holds is above 2.8 million in about one of a
 // million draws. If all pairs of segments at one place became contacts, the mean would be 3.1 million.
 TEST(Hold, OfTwoThrowsAtRestIsCheap) {
   constexpr int kPulls = 24, kTicks = 200;

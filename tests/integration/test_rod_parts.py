@@ -108,11 +108,12 @@ class Parts(unittest.TestCase):
     def called(self, counts, pattern):
         return [f for f in counts.functions if pattern.search(f)]
 
-    def test_the_whole_scene_does_execute_them(self):
-        """Sweeps solve contact with a desk, and Newton's method contact of the thread with itself alone."""
-        for files in (TWIST, CONTACT, ADAPTIVE):
-            executed = {**self.executed(self.full, files), **self.executed(self.without["world"], files)}
-            self.assertEqual(sorted(executed), sorted(files))
+    def test_the_parts_of_a_scene_are_executed(self):
+        for files in (TWIST, ADAPTIVE):
+            self.assertEqual(sorted(self.executed(self.full, files)), sorted(files))
+        # Sweeps solve contact with a desk, and Newton's method contact of the thread with itself alone
+        executed = {**self.executed(self.full, CONTACT), **self.executed(self.without["world"], CONTACT)}
+        self.assertEqual(sorted(executed), sorted(CONTACT))
         self.assertTrue(self.called(self.full, WORLD))
         self.assertTrue(self.called(self.full, RUBS))
 

@@ -114,7 +114,7 @@ Numerics numerics_of(const scene::Scene& scene) noexcept {
     case scene::Accuracy::kFast:
       n.substeps = 10;
       n.max_substeps = 16;
-      n.work = 3'260'000;  // 3.6 M instructions with 154 nodes: half of what `balanced` has
+      n.work = 3'260'000;  // 3.6 M instructions with 154 nodes: a little more than half of what `balanced` has
       break;
     case scene::Accuracy::kBalanced:
       break;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
 
 #include "tests/unit/control/controller_rig.hpp"
 
@@ -29,7 +30,7 @@ TEST(Culprit, ADriveFaultNamesHandDriveAndError) {
       const rt::Culprit found = culprit_of([&](Rig& rig) {
         auto& reading = rig.in.reading.hand[static_cast<std::size_t>(hand)];
         reading.drive_fault = true;
-        reading.blame(static_cast<std::size_t>(joint), 0x3210);
+        reading.blame(static_cast<std::size_t>(joint), rt::Trouble::kHasFailed, 0x3210);
       });
       EXPECT_EQ(found, (rt::Culprit{hand, joint, 0x3210}));
     }
@@ -49,7 +50,7 @@ TEST(Culprit, OfOldMessagesIsTheDriveThatDoesNotAnswer) {
   Rig rig;
   rig.to_force();
   auto& reading = rig.in.reading.hand[1];
-  reading.blame(2, 0);
+  reading.blame(2, rt::Trouble::kIsSilent);
   for (reading.age_ticks = 1; reading.age_ticks <= kWatchdog; ++reading.age_ticks) rig.tick();
   EXPECT_EQ(rig.controller.fault(), Fault::kTpdoTooOld);
   EXPECT_EQ(rig.controller.culprit(), (rt::Culprit{1, 2, 0}));
@@ -71,7 +72,7 @@ TEST(Culprit, AResetForgetsIt) {
 TEST(Culprit, InOffIsTheDriveThatIsNotOnAndInCalibrateTheHandWithoutAPose) {
   Rig rig;
   rig.in.reading.hand[1].enabled = false;
-  rig.in.reading.hand[1].blame(1, 0);
+  rig.in.reading.hand[1].blame(1, rt::Trouble::kIsOff);
   rig.ticks(10);
   ASSERT_EQ(rig.controller.state(), State::kOff);
   EXPECT_EQ(rig.controller.culprit(), (rt::Culprit{1, 1, 0}));
@@ -90,13 +91,22 @@ TEST(Culprit, OfARigThatShutsDownIsNobody) {
   EXPECT_EQ(rig.controller.culprit(), kNobody);
 }
 
-TEST(Culprit, OfSeveralDrivesIsTheOneWithAnErrorCode) {
+TEST(Culprit, OfSeveralDrivesIsTheOneInTheWorstTroubleAndThenTheOneWithAnErrorCode) {
   rt::HandReading reading;
-  reading.blame(0, 0);
-  reading.blame(1, 0x8130);
-  reading.blame(2, 0x5113);
-  EXPECT_EQ(reading.bad_joint, 1);
-  EXPECT_EQ(reading.drive_error, 0x8130U);
+  const auto blamed = [&] { return std::pair(int{reading.bad_joint}, reading.drive_error); };
+  reading.blame(0, rt::Trouble::kIsOff);
+  reading.blame(1, rt::Trouble::kIsOff);
+  EXPECT_EQ(blamed(), std::pair(0, 0U)) << "the first of equal ones";
+  reading.blame(2, rt::Trouble::kIsSilent);
+  EXPECT_EQ(blamed(), std::pair(2, 0U)) << "the worst";
+  reading.blame(0, rt::Trouble::kIsOff, 0x1000);
+  EXPECT_EQ(blamed(), std::pair(2, 0U));
+  reading.blame(1, rt::Trouble::kIsSilent, 0x8130);
+  EXPECT_EQ(blamed(), std::pair(1, 0x8130U)) << "the first with a code";
+  reading.blame(2, rt::Trouble::kIsSilent, 0x5113);
+  EXPECT_EQ(blamed(), std::pair(1, 0x8130U));
+  reading.blame(2, rt::Trouble::kHasFailed);
+  EXPECT_EQ(blamed(), std::pair(2, 0U)) << "its own code, or none";
 }
 
 }  // namespace

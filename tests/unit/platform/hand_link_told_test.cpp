@@ -150,8 +150,26 @@ TEST_F(HandLinkTest, TheDriveInTroubleIsNamed) {
     EXPECT_EQ(period().bad_joint, -1);
   }
   bus.inbox.push_back(can::encode(can::Emergency{kNodes[1], can::emcy::kRpdoTimeout, can::emcy::kGenericBit}));
+  link.send_sync();
+  answer(1), answer(2);
+  link.drain();
+  EXPECT_EQ(link.reading().bad_joint, 1) << "a failed drive counts more than a silent one";
   EXPECT_EQ(period().bad_joint, 1);
   EXPECT_EQ(period().drive_error, std::uint32_t{can::emcy::kRpdoTimeout});
+}
+
+/// While the drives start up none is enabled, and the one that does not answer is the one to look for.
+TEST_F(HandLinkTest, BeforeTheFirstSampleTheSilentDriveIsNamed) {
+  for (std::size_t silent = 0; silent < 3; ++silent) {
+    for (int k = 0; k < 5; ++k) {
+      link.send_sync();
+      for (std::size_t j = 0; j < 3; ++j) {
+        if (j != silent) answer(j, State::kSwitchOnDisabled);
+      }
+      link.drain();
+      EXPECT_EQ(link.reading().bad_joint, static_cast<int>(silent)) << k;
+    }
+  }
 }
 
 /// An emergency is cleared only by the request kEnable to a drive that is enabled, not by other requests.

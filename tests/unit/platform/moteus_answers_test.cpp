@@ -9,6 +9,22 @@
 namespace ligature::platform {
 namespace {
 
+/// While nobody is asked, too, the missing part is the one that has not answered.
+TEST(AnswerSet, NamesThePartThatDoesNotAnswer) {
+  for (std::size_t silent = 0; silent < AnswerSet::kParts; ++silent) {
+    AnswerSet answers;
+    for (int k = 0; k < 25; ++k) {
+      const bool asks = answers.begin_period(true);
+      for (std::size_t part = 0; asks && part < AnswerSet::kParts; ++part) answers.asked(part);
+      for (std::size_t part = 0; asks && part < AnswerSet::kParts; ++part) {
+        if (part != silent && answers.take(part) == AnswerSet::Answer::kInTime) answers.add(part);
+      }
+      for (std::size_t part = 0; part < AnswerSet::kParts; ++part)
+        EXPECT_EQ(answers.is_missing(part), part == silent) << part << " in period " << k;
+    }
+  }
+}
+
 /// Answers are late by any number of periods, or always by the same: those of all, of the module, or of one drive. An
 /// old pose or an old dead-man must never count as new. If answers are later than any sample may be, sets come so
 /// seldom that their age is fault 11.

@@ -37,7 +37,7 @@ TEST(Substeps, FollowTheTable) {
            {"a hand lets go", {.released = true}, after(0.95), whole},
            {"the thread flies, as after a release", {.node_d = whole + 0.1}, after(0.95), whole},
            {"a hand is fast", {.hand_d = 1.1}, after(0.95), whole},
-           {"a hand is not fast", {.hand_d = 0.9}, after(0.95), fewer},
+           {"a hand is not fast: one diameter in a tick, rounded up", {.hand_d = 1.0 + 1e-12}, after(0.95), fewer},
            {"the thread has come down", {.node_d = whole - 0.1}, after(0.95), fewer},
            {"a substep waits in a thread that flies", {.node_d = whole + 0.1, .waits = true}, after(0.95, 13), whole},
        })
@@ -58,6 +58,8 @@ TEST(Substeps, NewOnesAndFastMotionNeedANewMatrix) {
   EXPECT_FALSE(needs_new_matrix({}, 16, 16, kBalanced));
   EXPECT_TRUE(needs_new_matrix({}, 16, 10, kBalanced));
   EXPECT_TRUE(needs_new_matrix({.hand_d = 1.1}, 16, 16, kBalanced));
+  EXPECT_TRUE(needs_new_matrix({.released = true}, 16, 16, kBalanced));
+  EXPECT_TRUE(needs_new_matrix({.node_d = 16.1}, 16, 16, kBalanced));
   EXPECT_FALSE(needs_new_matrix({.hand_d = 1.1, .waits = true}, 16, 16, kBalanced)) << "the substep is continued";
 }
 
@@ -65,12 +67,13 @@ TEST(Tolerance, GrowsWithHandsOrThreadAndIsSmallInAThreadThatHardlyMoves) {
   const Numerics n;
   const double rest = n.settled_m_per_s;
   const auto grown = [&](double speed) { return rest + n.settled_share * speed; };
-  EXPECT_DOUBLE_EQ(tolerance(0.2, 0.0, 1.0, n), grown(0.2)) << "hands that part";
-  EXPECT_DOUBLE_EQ(tolerance(0.0, 1.0, 1.0, n), grown(tuning.stir)) << "a thread that moves by itself";
-  EXPECT_DOUBLE_EQ(tolerance(0.2, 1.0, 1.0, n), grown(0.2)) << "the larger of the two";
-  EXPECT_DOUBLE_EQ(tolerance(0.0, 0.0, 1.0, n), rest) << "a thread that is carried along";
-  EXPECT_DOUBLE_EQ(tolerance(0.2, 0.0, 1e-3, n), tuning.creep * 1e-3) << "slow nodes";
-  EXPECT_DOUBLE_EQ(tolerance(0.2, 0.0, 0.0, n), tuning.creep * rest) << "nodes at rest";
+  EXPECT_DOUBLE_EQ(tolerance(0.2, 0.0, 1.0, false, n), grown(0.2)) << "hands that part";
+  EXPECT_DOUBLE_EQ(tolerance(0.0, 1.0, 1.0, false, n), grown(tuning.stir)) << "a thread that moves by itself";
+  EXPECT_DOUBLE_EQ(tolerance(0.2, 1.0, 1.0, false, n), grown(0.2)) << "the larger of the two";
+  EXPECT_DOUBLE_EQ(tolerance(0.0, 0.0, 1.0, false, n), rest) << "a thread that is carried along";
+  EXPECT_DOUBLE_EQ(tolerance(0.0, 1.0, 1.0, true, n), rest) << "a thread that is alone";
+  EXPECT_DOUBLE_EQ(tolerance(0.2, 0.0, 1e-3, false, n), tuning.creep * 1e-3) << "slow nodes";
+  EXPECT_DOUBLE_EQ(tolerance(0.2, 0.0, 0.0, false, n), tuning.creep * rest) << "nodes at rest";
 }
 
 TEST(Patience, EndsAndIsWholeForTheNextSubstep) {

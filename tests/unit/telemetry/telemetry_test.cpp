@@ -238,7 +238,7 @@ TEST_F(TelemetryTest, ARigThatWaitsSaysWhatItWaitsFor) {
   EXPECT_EQ(sink.events[0].kind, ligature_msg::event_t::KIND_WAITS);
   EXPECT_EQ(sink.events[0].tick, 3000);
   EXPECT_EQ(sink.events[0].hand, 0);
-  EXPECT_TRUE(sink.events[0].text.ends_with(" for 3 s, waits for a drive: left hand, shoulder (node 2)"))
+  EXPECT_TRUE(sink.events[0].text.ends_with(" for 3 s, waits for: left hand, shoulder (node 2)"))
       << sink.events[0].text;
   record.state = ligature_msg::tick_t::STATE_CALIBRATE;
   record.culprit = {.hand = 1};
@@ -246,7 +246,8 @@ TEST_F(TelemetryTest, ARigThatWaitsSaysWhatItWaitsFor) {
   ASSERT_EQ(sink.events.size(), 3U) << "the change of state, and a word 3 s later";
   EXPECT_EQ(sink.events[2].tick, 32'999 + 3000);
   EXPECT_EQ(sink.events[2].code, ligature_msg::tick_t::STATE_CALIBRATE);
-  EXPECT_TRUE(sink.events[2].text.ends_with(" for 3 s, waits for a possible pose: right hand")) << sink.events[2].text;
+  EXPECT_TRUE(sink.events[2].text.ends_with(" for 3 s, because its angles are no possible pose: right hand"))
+      << sink.events[2].text;
   until(tick, 70'000);
   EXPECT_EQ(sink.events.size(), 4U) << "again after 30 s";
   record.state = ligature_msg::tick_t::STATE_IDLE;
