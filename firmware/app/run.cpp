@@ -160,9 +160,7 @@ int run_loop(RealTimeSide& side, telemetry::LcmLink& link, telemetry::Telemetry&
   std::fputs(summary(cycle.timing(), cycle.periods(), losses(outlets, recorder)).c_str(), stdout);
   const auto fault = side.fault();
   if (fault == control::Fault::kNone) return 0;
-  const std::string where = telemetry::in_words(side.culprit());
-  return fail({3, "ended in fault " + std::to_string(static_cast<int>(fault)) + ": " + control::name(fault) +
-                      (where.empty() ? "" : ", " + where)});
+  return fail({3, "ended in " + telemetry::in_words(static_cast<int>(fault), control::name(fault), side.culprit())});
 }
 
 }  // namespace

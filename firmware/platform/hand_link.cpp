@@ -154,11 +154,7 @@ rt::HandReading HandLink::reading() const noexcept {
     const bool is_on = state == State::kOperationEnabled, is_missing = age_ticks_ > 0 && (arrived_ & 1U << j) == 0;
     const bool has_failed = node.emergency != can::emcy::kNoError || !node.operational ||
                             (valid_ && (state == State::kFault || state == State::kFaultReactionActive));
-    r.enabled = r.enabled && is_on;
-    r.drive_fault = r.drive_fault || has_failed;
-    if (!is_on) r.blame(j, rt::Trouble::kIsOff, node.emergency);
-    if (is_missing) r.blame(j, rt::Trouble::kIsSilent, node.emergency);
-    if (has_failed) r.blame(j, rt::Trouble::kHasFailed, node.emergency);
+    r.tell_drive(j, {is_on, is_missing, has_failed, node.emergency});
     // Only drives with Ligature's own profile (docs/wire.md) use this statusword bit for a wrong torque. Other drives
     // report the torque of every joint instead.
     r.torque_astray =
@@ -169,8 +165,8 @@ rt::HandReading HandLink::reading() const noexcept {
     else if (valid_)
       r.torque_Nm[j] = node.latest.torque_permille * Nm_per_permille_;
   }
-  if (age_ticks_ > 0 && (complete_ & ~arrived_ & kInputsPart) != 0)
-    r.blame(rt::HandReading::kButtonModule, rt::Trouble::kIsSilent);
+  const bool inputs_are_missing = age_ticks_ > 0 && (complete_ & ~arrived_ & kInputsPart) != 0;
+  r.tell_drive(rt::HandReading::kButtonModule, {.is_silent = inputs_are_missing});
   tell_buttons(r);
   return r;
 }

@@ -143,12 +143,9 @@ rt::HandReading MoteusLink::reading() const noexcept {
                       (r.valid && moteus::is(used_[j].mode, Mode::kPosition) && !std::isfinite(used_[j].torque_Nm));
     r.torque_limited[j] = moteus::is_limit(used_[j].fault);
     const bool has_failed = node.has_failed || node.is_lost || node.tells_unasked;
-    r.drive_fault = r.drive_fault || has_failed;
-    if (!node.is_on()) r.blame(j, rt::Trouble::kIsOff, node.error());
-    if (answers_.is_missing(j)) r.blame(j, rt::Trouble::kIsSilent, node.error());
-    if (has_failed) r.blame(j, rt::Trouble::kHasFailed, node.error());
+    r.tell_drive(j, {node.is_on(), answers_.is_missing(j), has_failed, node.error()});
   }
-  if (answers_.is_missing(AnswerSet::kButtons)) r.blame(rt::HandReading::kButtonModule, rt::Trouble::kIsSilent);
+  r.tell_drive(rt::HandReading::kButtonModule, {.is_silent = answers_.is_missing(AnswerSet::kButtons)});
   return r;
 }
 

@@ -133,14 +133,9 @@ rt::HandReading OdriveLink::reading() const noexcept {
     r.q_rad[j] = rev_[j] * kRad_per_rev;
     const bool is_on = node.is_on() && !node.was_off;
     const bool has_failed = node.heartbeat.error != 0 || node.had_error || node.tells_unasked || node.was_away;
-    r.enabled = r.enabled && is_on;
-    r.drive_fault = r.drive_fault || has_failed;
-    const auto error = node.heartbeat.error;
-    if (!is_on) r.blame(j, rt::Trouble::kIsOff, error);
-    if (answers_.is_missing(j)) r.blame(j, rt::Trouble::kIsSilent, error);
-    if (has_failed) r.blame(j, rt::Trouble::kHasFailed, error);
+    r.tell_drive(j, {is_on, answers_.is_missing(j), has_failed, node.heartbeat.error});
   }
-  if (answers_.is_missing(AnswerSet::kButtons)) r.blame(rt::HandReading::kButtonModule, rt::Trouble::kIsSilent);
+  r.tell_drive(rt::HandReading::kButtonModule, {.is_silent = answers_.is_missing(AnswerSet::kButtons)});
   return r;
 }
 

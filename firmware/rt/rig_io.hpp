@@ -21,12 +21,12 @@ enum class Foreign : std::uint8_t {
   kObject,   ///< an SDO request
 };
 
-/// What is wrong with a drive, the worst last.
-enum class Trouble : std::uint8_t {
-  kNone,
-  kIsOff,     ///< not enabled
-  kIsSilent,  ///< its part of this period's samples has not come
-  kHasFailed,
+/// What a hand's link knows of one drive, or of the button module.
+struct DriveStatus {
+  bool is_on = true;        ///< enabled
+  bool is_silent = false;   ///< its part of this period's samples has not come
+  bool has_failed = false;  ///< it is in Fault, sent an emergency or fell out of NMT operational
+  std::uint32_t error = 0;  ///< error code that it sent; 0: none
 };
 
 /// State of one hand at the last complete set of joint messages.
@@ -56,16 +56,22 @@ struct HandReading {
   std::int32_t age_ticks = 0;  ///< periods since the last complete set; 0: sampled at this period's SYNC
   /// For messages only: the joint whose drive is in the worst trouble; kButtonModule: the button module; -1: none.
   std::int8_t bad_joint = -1;
-  Trouble trouble = Trouble::kNone;
   std::uint32_t drive_error = 0;  ///< error code that this drive sent; 0: none
   static constexpr std::size_t kButtonModule = kJoints;
 
-  /// Notes trouble of a joint's drive or of the button module. The worst one stays, and of equal ones the first with an
-  /// error code, or the first.
-  void blame(std::size_t joint, Trouble what, std::uint32_t error = 0) noexcept {
-    if (what < trouble || (what == trouble && (error == 0 || drive_error != 0))) return;
-    bad_joint = static_cast<std::int8_t>(joint), trouble = what, drive_error = error;
+  /// Enters a drive into enabled, drive_fault and bad_joint. Failed is worse than silent, and silent worse than off; of
+  /// drives in equal trouble the first with an error code is named, or the first.
+  void tell_drive(std::size_t joint, const DriveStatus& drive) noexcept {
+    enabled = enabled && drive.is_on;
+    drive_fault = drive_fault || drive.has_failed;
+    const int trouble = drive.has_failed ? 3 : drive.is_silent ? 2 : drive.is_on ? 0 : 1;
+    if (trouble < worst_ || (trouble == worst_ && (drive.error == 0 || drive_error != 0))) return;
+    if (trouble == 0) return;
+    bad_joint = static_cast<std::int8_t>(joint), worst_ = trouble, drive_error = drive.error;
   }
+
+ private:
+  int worst_ = 0;  // trouble of bad_joint
 };
 
 struct RigReading {

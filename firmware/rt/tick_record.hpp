@@ -57,8 +57,8 @@ using Triple = std::array<double, 3>;
 /// a waiting request and of the newest request.
 inline constexpr std::size_t kThreadSteps = 3;
 
-/// One control period; fields, units and frames as in protocol/lcm/tick_t.lcm, plus
-/// `armed` and `culprit`, which go out with other messages (status_t, event_t).
+/// One control period; fields, units and frames as in protocol/lcm/tick_t.lcm. In addition `armed` and `culprit`, which
+/// go into other messages (status_t, event_t).
 struct TickRecord {
   std::int64_t tick = 0;
   std::int64_t scheduled_ns = 0;

@@ -25,13 +25,13 @@ ligature_msg::event_t event(std::int64_t tick, std::int8_t kind, std::int8_t han
 }  // namespace
 
 /// What the rig waits for in OFF or CALIBRATE, if it is time to say so: after kFirstWord, then every kNextWord.
-std::string EventFinder::delay(const rt::TickRecord& r) {
+std::string EventFinder::find_wait(const rt::TickRecord& r) {
   if (r.state != last_.state) since_tick_ = r.tick, next_word_tick_ = r.tick + kFirstWord;
   const bool waits = (r.state == kOff || r.state == kCalibrate) && r.culprit.hand >= 0;
   if (!waits || r.tick < next_word_tick_) return {};
   next_word_tick_ = r.tick + kNextWord;
   return std::string(names_.state(r.state)) + " for " + std::to_string((r.tick - since_tick_) / kTicksPerSecond) +
-         (r.state == kOff ? " s, waits for: " : " s, because its angles are no possible pose: ") + in_words(r.culprit);
+         (r.state == kOff ? " s, waits for: " : " s, because the angles are no possible pose: ") + in_words(r.culprit);
 }
 
 std::vector<ligature_msg::event_t> EventFinder::next(const rt::TickRecord& r) {
@@ -39,16 +39,14 @@ std::vector<ligature_msg::event_t> EventFinder::next(const rt::TickRecord& r) {
   std::vector<event_t> events;
   if ((r.flags & rt::kPeriodLost) != 0) return events;
   if (r.fault != last_.fault && r.fault != 0) {
-    const std::string where = in_words(r.culprit);
-    events.push_back(
-        event(r.tick, event_t::KIND_FAULT, r.culprit.hand, r.fault,
-              "fault " + std::to_string(r.fault) + ": " + names_.fault(r.fault) + (where.empty() ? "" : ", " + where)));
+    events.push_back(event(r.tick, event_t::KIND_FAULT, r.culprit.hand, r.fault,
+                           in_words(r.fault, names_.fault(r.fault), r.culprit)));
   }
   if (r.state != last_.state) {
     events.push_back(event(r.tick, event_t::KIND_STATE, -1, r.state,
                            std::string(names_.state(last_.state)) + " -> " + names_.state(r.state)));
   }
-  if (std::string text = delay(r); !text.empty())
+  if (std::string text = find_wait(r); !text.empty())
     events.push_back(event(r.tick, event_t::KIND_WAITS, r.culprit.hand, r.state, std::move(text)));
   for (std::size_t h = 0; h < rt::kHands; ++h) {
     const auto hand = static_cast<std::int8_t>(h);

@@ -33,7 +33,7 @@ class EventFinder {
  private:
   static constexpr std::int64_t kTicksPerSecond = std::chrono::seconds(1) / rt::kPeriod;
   static constexpr std::int64_t kFirstWord = 3 * kTicksPerSecond, kNextWord = 30 * kTicksPerSecond;
-  [[nodiscard]] std::string delay(const rt::TickRecord& record);
+  [[nodiscard]] std::string find_wait(const rt::TickRecord& record);
 
   Names names_;
   rt::TickRecord last_{};

@@ -29,8 +29,7 @@ TEST(Culprit, ADriveFaultNamesHandDriveAndError) {
     for (const std::int8_t joint : std::array<std::int8_t, 3>{0, 1, 2}) {
       const rt::Culprit found = culprit_of([&](Rig& rig) {
         auto& reading = rig.in.reading.hand[static_cast<std::size_t>(hand)];
-        reading.drive_fault = true;
-        reading.blame(static_cast<std::size_t>(joint), rt::Trouble::kHasFailed, 0x3210);
+        reading.tell_drive(static_cast<std::size_t>(joint), {.has_failed = true, .error = 0x3210});
       });
       EXPECT_EQ(found, (rt::Culprit{hand, joint, 0x3210}));
     }
@@ -50,7 +49,7 @@ TEST(Culprit, OfOldMessagesIsTheDriveThatDoesNotAnswer) {
   Rig rig;
   rig.to_force();
   auto& reading = rig.in.reading.hand[1];
-  reading.blame(2, rt::Trouble::kIsSilent);
+  reading.tell_drive(2, {.is_silent = true});
   for (reading.age_ticks = 1; reading.age_ticks <= kWatchdog; ++reading.age_ticks) rig.tick();
   EXPECT_EQ(rig.controller.fault(), Fault::kTpdoTooOld);
   EXPECT_EQ(rig.controller.culprit(), (rt::Culprit{1, 2, 0}));
@@ -71,8 +70,7 @@ TEST(Culprit, AResetForgetsIt) {
 
 TEST(Culprit, InOffIsTheDriveThatIsNotOnAndInCalibrateTheHandWithoutAPose) {
   Rig rig;
-  rig.in.reading.hand[1].enabled = false;
-  rig.in.reading.hand[1].blame(1, rt::Trouble::kIsOff);
+  rig.in.reading.hand[1].tell_drive(1, {.is_on = false});
   rig.ticks(10);
   ASSERT_EQ(rig.controller.state(), State::kOff);
   EXPECT_EQ(rig.controller.culprit(), (rt::Culprit{1, 1, 0}));
@@ -93,20 +91,21 @@ TEST(Culprit, OfARigThatShutsDownIsNobody) {
 
 TEST(Culprit, OfSeveralDrivesIsTheOneInTheWorstTroubleAndThenTheOneWithAnErrorCode) {
   rt::HandReading reading;
-  const auto blamed = [&] { return std::pair(int{reading.bad_joint}, reading.drive_error); };
-  reading.blame(0, rt::Trouble::kIsOff);
-  reading.blame(1, rt::Trouble::kIsOff);
-  EXPECT_EQ(blamed(), std::pair(0, 0U)) << "the first of equal ones";
-  reading.blame(2, rt::Trouble::kIsSilent);
-  EXPECT_EQ(blamed(), std::pair(2, 0U)) << "the worst";
-  reading.blame(0, rt::Trouble::kIsOff, 0x1000);
-  EXPECT_EQ(blamed(), std::pair(2, 0U));
-  reading.blame(1, rt::Trouble::kIsSilent, 0x8130);
-  EXPECT_EQ(blamed(), std::pair(1, 0x8130U)) << "the first with a code";
-  reading.blame(2, rt::Trouble::kIsSilent, 0x5113);
-  EXPECT_EQ(blamed(), std::pair(1, 0x8130U));
-  reading.blame(2, rt::Trouble::kHasFailed);
-  EXPECT_EQ(blamed(), std::pair(2, 0U)) << "its own code, or none";
+  const auto after = [&](std::size_t joint, const rt::DriveStatus& drive) {
+    reading.tell_drive(joint, drive);
+    return std::pair(int{reading.bad_joint}, reading.drive_error);
+  };
+  EXPECT_EQ(after(2, {}), std::pair(-1, 0U)) << "no trouble";
+  EXPECT_EQ(after(2, {.error = 0x1000}), std::pair(-1, 0U)) << "an error that is over";
+  EXPECT_EQ(after(0, {.is_on = false}), std::pair(0, 0U));
+  EXPECT_EQ(after(1, {.is_on = false}), std::pair(0, 0U)) << "the first of equal ones";
+  EXPECT_EQ(after(2, {.is_silent = true}), std::pair(2, 0U)) << "the worst";
+  EXPECT_EQ(after(0, {.is_on = false, .error = 0x1000}), std::pair(2, 0U));
+  EXPECT_EQ(after(1, {.is_silent = true, .error = 0x8130}), std::pair(1, 0x8130U)) << "the first with a code";
+  EXPECT_EQ(after(2, {.is_silent = true, .error = 0x5113}), std::pair(1, 0x8130U));
+  EXPECT_FALSE(reading.drive_fault);
+  EXPECT_EQ(after(2, {.has_failed = true}), std::pair(2, 0U)) << "its own code, or none";
+  EXPECT_TRUE(reading.drive_fault);
 }
 
 }  // namespace
