@@ -24,9 +24,9 @@ struct Situation {
   }
 };
 
-/// Number of substeps of the next tick. It is largest when the motion is fast. While a substep waits, it
-/// stays. It is halved, but not below tuning.fewest_substeps, when the last tick used a large part of its work, or the
-/// clock ended it.
+/// Number of substeps of the next tick. It is largest when the motion is fast. While a substep waits, it stays. It is
+/// halved, but not below tuning.fewest_substeps, when the last tick used a large part of its work, or the clock ended
+/// it.
 /// @param last    what the last tick did
 /// @param budget  of a tick, instructions
 [[nodiscard]] inline int substeps_of(const Situation& now, const TickReport& last, long budget,
@@ -46,20 +46,21 @@ struct Situation {
   return substeps != last || (now.is_fast(numerics) && !now.waits);
 }
 
+/// Speeds that decide how exactly contacts are solved, m/s.
+struct Speeds {
+  double hands = 0.0;    ///< half the relative speed of the hands
+  double own = 0.0;      ///< largest nodal speed relative to the mean velocity
+  double fastest = 0.0;  ///< largest nodal speed
+};
+
 /// Tolerance of the contact solver, m/s: a pass that changes no velocity by more is the last. It grows with the speed
 /// of the hands or, as after a release, of the thread itself, but stays below a tenth of the fastest node's speed, so
-/// that a nearly resting thread does not drift.
-/// @param pace_m_per_s     half the relative speed of the hands
-/// @param own_m_per_s      largest nodal speed relative to the mean velocity
-/// @param fastest_m_per_s  largest nodal speed
-/// @param alone            whether the thread is alone (glossary); then its own speed does not count: with contacts
-/// that
-///                         close 0.01 m/s too fast, a released surgeon's knot gained 3 % of its stored energy
-[[nodiscard]] inline double tolerance(double pace_m_per_s, double own_m_per_s, double fastest_m_per_s, bool alone,
-                                      const Numerics& numerics) noexcept {
-  const double speed = std::max(pace_m_per_s, alone ? 0.0 : tuning.stir * own_m_per_s);
+/// that a nearly resting thread does not drift. For a thread that is alone (glossary) its own speed does not count:
+/// with contacts that close 0.01 m/s too fast, a released surgeon's knot gained 3 % of its stored energy.
+[[nodiscard]] inline double tolerance(const Speeds& now, bool alone, const Numerics& numerics) noexcept {
+  const double speed = std::max(now.hands, alone ? 0.0 : tuning.stir * now.own);
   return std::min(numerics.settled_m_per_s + numerics.settled_share * speed,
-                  tuning.creep * std::max(numerics.settled_m_per_s, fastest_m_per_s));
+                  tuning.creep * std::max(numerics.settled_m_per_s, now.fastest));
 }
 
 /// How long a substep may wait that Newton's method has not solved. A waiting substep is continued in the next tick.

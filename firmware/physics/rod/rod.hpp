@@ -132,7 +132,6 @@ class Rod : private RodKept, private RodNow, private RodCache {
     long window, rows, passes;
   };
   [[nodiscard]] Allowance work_allowed(bool metric_too) const noexcept;
-  [[nodiscard]] double settled() const noexcept;
   std::optional<Effort> choose_rows(double dt_s) noexcept;
   [[nodiscard]] bool prepare_metric(double dt_s) noexcept;
   template <unsigned Bits>

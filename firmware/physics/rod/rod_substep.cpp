@@ -103,10 +103,6 @@ bool Rod::prepare_metric(double dt_s) noexcept {
   return metric_.prepare(state_.mesh, material_, dt_s, from, to, work_.time());
 }
 
-double Rod::settled() const noexcept {
-  return tolerance(pace_m_per_s_, stir_m_per_s_, motion_.fastest(), alone_, numerics_);
-}
-
 // Chooses the contacts that are solved, and with them the range of nodes that is solved with contacts. @return nothing
 // when not all can be afforded and the substep is not the tick's first: it then waits for the next tick. So contacts
 // are left out only when the whole budget of a tick is too small for them.
@@ -120,7 +116,7 @@ std::optional<Effort> Rod::choose_rows(double dt_s) noexcept {
   const long least = price::pass(rows, rows, nodes);
   rows_cost_ = rows > 0 ? price::rows(rows, nodes) + least : 0;
   return Effort{work_.time(), numerics_.max_passes, std::max(least, allowed.passes - price::rows(rows, nodes)),
-                settled()};
+                tolerance({pace_m_per_s_, stir_m_per_s_, motion_.fastest()}, alone_, numerics_)};
 }
 
 // Newton's method with all the work that is left. @return kUnsolved when sweeps must solve the substep, kLater when it

@@ -57,7 +57,7 @@ struct Tuning {
 
   // ---- What is given up when the work does not suffice ----
   /// Contact budget of a tick, instructions, and its part for each node: what `ligature-firmware admit` finds on usual
-  /// machines (5.5 to 7 million with 154 nodes). Test: Work.*
+  /// machines (mostly 5.5 to 7 million with 154 nodes). Test: Work.*
   long work = 6'100'000, work_per_node = 2500;
   /// Substeps of a tick; after a tick that used more than the share `labours` of the budget, half of them, but at least
   /// fewest_substeps. With six the errors cause overlaps, which cost more than was saved. Without this rule pulls lose

@@ -67,13 +67,13 @@ TEST(Tolerance, GrowsWithHandsOrThreadAndIsSmallInAThreadThatHardlyMoves) {
   const Numerics n;
   const double rest = n.settled_m_per_s;
   const auto grown = [&](double speed) { return rest + n.settled_share * speed; };
-  EXPECT_DOUBLE_EQ(tolerance(0.2, 0.0, 1.0, false, n), grown(0.2)) << "hands that part";
-  EXPECT_DOUBLE_EQ(tolerance(0.0, 1.0, 1.0, false, n), grown(tuning.stir)) << "a thread that moves by itself";
-  EXPECT_DOUBLE_EQ(tolerance(0.2, 1.0, 1.0, false, n), grown(0.2)) << "the larger of the two";
-  EXPECT_DOUBLE_EQ(tolerance(0.0, 0.0, 1.0, false, n), rest) << "a thread that is carried along";
-  EXPECT_DOUBLE_EQ(tolerance(0.0, 1.0, 1.0, true, n), rest) << "a thread that is alone";
-  EXPECT_DOUBLE_EQ(tolerance(0.2, 0.0, 1e-3, false, n), tuning.creep * 1e-3) << "slow nodes";
-  EXPECT_DOUBLE_EQ(tolerance(0.2, 0.0, 0.0, false, n), tuning.creep * rest) << "nodes at rest";
+  EXPECT_DOUBLE_EQ(tolerance({0.2, 0.0, 1.0}, false, n), grown(0.2)) << "hands that part";
+  EXPECT_DOUBLE_EQ(tolerance({0.0, 1.0, 1.0}, false, n), grown(tuning.stir)) << "a thread that moves by itself";
+  EXPECT_DOUBLE_EQ(tolerance({0.2, 1.0, 1.0}, false, n), grown(0.2)) << "the larger of the two";
+  EXPECT_DOUBLE_EQ(tolerance({0.0, 0.0, 1.0}, false, n), rest) << "a thread that is carried along";
+  EXPECT_DOUBLE_EQ(tolerance({0.0, 1.0, 1.0}, true, n), rest) << "a thread that is alone";
+  EXPECT_DOUBLE_EQ(tolerance({0.2, 0.0, 1e-3}, false, n), tuning.creep * 1e-3) << "slow nodes";
+  EXPECT_DOUBLE_EQ(tolerance({0.2, 0.0, 0.0}, false, n), tuning.creep * rest) << "nodes at rest";
 }
 
 TEST(Patience, EndsAndIsWholeForTheNextSubstep) {
