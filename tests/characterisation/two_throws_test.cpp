@@ -106,6 +106,31 @@ TEST(Labour, IsSharedFairly) {
   EXPECT_LT(lost, 0.145);
 }
 
+// Newton's method converges in threads of any number of nodes. The overhand is pulled at a speed at which no tick needs
+// much work. With a proximal term that does not grow (contact_newton.hpp), the method cycles in one tick of every tenth
+// pull, until the tick's work is used up and time is lost.
+TEST(Labour, IsNeverUsedUpByCycles) {
+  Random random(607);
+  long most = 0;
+  for (int k = 0; k < 60; ++k) {
+    const int nodes = 36 + static_cast<int>(random() % 200);
+    double lost = 0.0;
+    const auto look = [&](const RodSimulation& sim) {
+      lost += sim.rod().report().time_lost;
+      most = std::max(most, sim.rod().report().work);
+    };
+    Tightening pull = pulled("suture-3-0-knot.toml", 0.03 + 0.12 * random.share(),
+                             {"suture.nodes=" + std::to_string(nodes), "world.grippers_collide=false"}, look);
+    for (int tick = 0; tick < 200; ++tick) {
+      pull.tick(0.0);
+      look(pull.sim());
+    }
+    EXPECT_EQ(lost, 0.0) << nodes;
+  }
+  RecordProperty("most", std::to_string(most));
+  EXPECT_LT(most, 4'000'000);
+}
+
 // With suture.accuracy = "fast" a tick has ten substeps, also when the budget runs out. With six substeps, square knots
 // pulled to 5 N had up to 59 guard events, were then held with only 0.02 to 3.6 N, and lost as much time. Also with
 // ten, `fast` loses time at these speeds, so some knots are held with less than 5 N; the mean force shows how well the

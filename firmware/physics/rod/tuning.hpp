@@ -50,10 +50,10 @@ struct Tuning {
   /// more than `moved`. Test: Hold.MovesOnlyWhatIsSettledInTheTrueMatrix
   int stale = 3;
   double moved = 0.16;
-  /// Proximal term of Newton's method, relative to the contact's own response along the normal; across it twice as
-  /// much. Time lost in pulls of surgeon's knots: 10.9 % with 5e-4, 7.4 % with 1e-3, 6.0 % with 1.5e-3; with 2.2e-3
-  /// held granny knots lose 1.3 % instead of 0.4 %. Test: Labour.IsSharedFairly
-  double cost = 1.5e-3;
+  /// Proximal term of Newton's method, relative to the contact's own response along the normal, and across it twice as
+  /// much; multiplied by the number of steps that have increased the residual (contact_newton.hpp). Test:
+  /// Labour.IsNeverUsedUpByCycles
+  double proximal = 1e-3;
 
   // ---- What is given up when the work does not suffice ----
   /// Contact budget of a tick, instructions, and its part for each node: what `ligature-firmware admit` finds on usual

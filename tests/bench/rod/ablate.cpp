@@ -59,7 +59,7 @@ const std::vector<Number> kNumbers = {
     NUMBER(newton_near, 1.0, 6.0),
     NUMBER(stale, 1, 100),
     NUMBER(moved, 0.05, 0.5),
-    NUMBER(cost, 0.0, 7e-4, 3e-3),
+    NUMBER(proximal, 0.0, 5e-4, 2e-3),
     NUMBER(work),
     NUMBER(substeps, 10, 12, 24),
     NUMBER(fewest_substeps, 6, 13, 100),

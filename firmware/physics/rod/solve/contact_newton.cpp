@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "firmware/physics/rod/contact/contact_set.hpp"
@@ -191,6 +192,8 @@ bool ContactNewton::couple(TickTime& time) noexcept {
 }
 
 bool ContactNewton::look(const Contact* rows, int count, const Vec* p, const Vec* u) noexcept {
+  last2_ = std::numeric_limits<double>::infinity();
+  rises_ = 0;
   for (int k = 0; k < count; ++k) {
     if (slot_[static_cast<std::size_t>(k)] >= 0) continue;
     const Contact& c = rows[k];

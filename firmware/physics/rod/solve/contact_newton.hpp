@@ -34,7 +34,8 @@ struct Contact;
 /// Without damping this cycles: a few kinds are wrong, and impulses to which velocities hardly respond (cond W is 1e5)
 /// become a thousand times too large, which makes all other kinds wrong. So a term proportional to the change of each
 /// impulse is added to its equation (a proximal point method [Rockafellar 1976]), which mostly damps such weak
-/// directions. This term vanishes in the solution, where impulses no longer change.
+/// directions. This term vanishes in the solution, where impulses no longer change. With a constant factor some cycles
+/// remain, so the factor is multiplied by the number of steps that have increased the residual.
 ///
 /// Z may be some substeps old: after each step the caller computes the velocities with the present A.
 class ContactNewton {
@@ -102,8 +103,8 @@ class ContactNewton {
   bool solve(const Contact* rows, Vec* p, Vec* u, TickTime& time = TickTime::endless()) noexcept;
   /// The members that an image saves (image.hpp): all but those that are computed again in every Newton step.
   [[nodiscard]] static auto members(ContactNewton& self) noexcept {
-    auto& [z, spread, slot, at, rows, slots, coupled, put_off, w, unknowns, count, carrying, dense, on, stuck, with,
-           rest] = self;
+    auto& [z, spread, slot, at, rows, slots, coupled, put_off, w, unknowns, count, last2, rises, carrying, dense, on,
+           stuck, with, rest] = self;
     return std::tie(z, slot, at, rows, slots, coupled, put_off, w);
   }
 
@@ -186,6 +187,8 @@ class ContactNewton {
   // then (for sticking contacts only) those along the sliding directions
   std::vector<Unknown> unknowns_;
   int count_ = 0;
+  double last2_ = 0.0;  // squared residual at the last read()
+  int rises_ = 0;       // steps since look() that have increased the residual
   std::size_t carrying_ = 0;
   Dense dense_;
   // Scratch of assemble().

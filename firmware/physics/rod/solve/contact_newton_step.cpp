@@ -31,7 +31,8 @@ double ContactNewton::read(const Contact* rows, const Vec* p, const Vec* u) noex
     slot.kind = to_n <= 0.0 ? Kind::kOpen : sticks ? Kind::kSticks : Kind::kSlides;
     if (slot.kind != Kind::kOpen) count_ += !Friction ? 1 : sticks ? 3 : 2;
   }
-  return largest2;
+  rises_ += largest2 > last2_;
+  return last2_ = largest2;
 }
 
 template <bool Friction>
@@ -123,13 +124,14 @@ void ContactNewton::bring_forward() noexcept {
 
 template <bool Friction>
 void ContactNewton::list_unknowns(const Contact* rows, const Vec* p, const Vec* u) noexcept {
+  const double proximal = tuning.proximal * std::max(1, rises_);
   constexpr double kHardly = 1e-6;  // least radius / |q| of a friction disc: bounds `give` at mu = 0
   unknowns_.clear();
   stuck_.clear();
-  const auto add = [&](std::size_t s, Vec along, Vec with, double give, double cost, double wanted) {
+  const auto add = [&](std::size_t s, Vec along, Vec with, double give, double damping, double wanted) {
     const std::int32_t k = slots_[s].row;
     const double now = dot(p[k], along);
-    unknowns_.push_back({s, along, with, give + cost, wanted - give * now - dot(along, u[k]), now});
+    unknowns_.push_back({s, along, with, give + damping, wanted - give * now - dot(along, u[k]), now});
   };
   const auto direction = [&](const Slot& slot) {
     const Vec n = rows[slot.row].n;
@@ -143,7 +145,7 @@ void ContactNewton::list_unknowns(const Contact* rows, const Vec* p, const Vec* 
     if constexpr (Friction) slot.along.v = direction(slot).v;
     const bool slides = Friction && slot.kind == Kind::kSlides;
     const Vec with = slides ? c.n + c.mu * slot.along : c.n;
-    add(s, c.n, with, c.soft, tuning.cost * slot.per_r_n, c.target);
+    add(s, c.n, with, c.soft, proximal * slot.per_r_n, c.target);
     for (std::size_t i = 0; i < 3; ++i) with_.data()[i * kPlane + s] = static_cast<float>(with.v[i]);
   }
   if constexpr (Friction) {
@@ -152,13 +154,13 @@ void ContactNewton::list_unknowns(const Contact* rows, const Vec* p, const Vec* 
       const Vec across = cross(rows[slot.row].n, slot.along);
       const double share = std::max(kHardly, slot.most / std::max(norm(slot.q), 1e-300));
       const double give = slot.kind == Kind::kSticks ? 0.0 : (1.0 - share) / share * slot.per_r_t;
-      add(s, across, across, give, 2.0 * tuning.cost * slot.per_r_t, 0.0);
+      add(s, across, across, give, 2.0 * proximal * slot.per_r_t, 0.0);
       for (std::size_t i = 0; i < 3; ++i) with_.data()[(3 + i) * kPlane + s] = static_cast<float>(across.v[i]);
     }
     for (std::size_t s = 0; s < carrying_; ++s) {
       const Slot& slot = slots_[s];
       if (slot.kind != Kind::kSticks) continue;
-      add(s, slot.along, slot.along, 0.0, 2.0 * tuning.cost * slot.per_r_t, 0.0);
+      add(s, slot.along, slot.along, 0.0, 2.0 * proximal * slot.per_r_t, 0.0);
       stuck_.push_back(
           {s, static_cast<float>(slot.along[0]), static_cast<float>(slot.along[1]), static_cast<float>(slot.along[2])});
     }
