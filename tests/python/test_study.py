@@ -7,12 +7,14 @@ import random
 
 import dask
 import pytest
+from distributed import Client, KilledWorker
 
 import ligature
 from conftest import BIN, SCENES, SOURCE, run_program
 from ligature.study import Study, rows
 from ligature.study.cluster import slurm_cluster
 from ligature.study.progress import Progress, span
+from ligature.study.runner import _Queue
 from ligature.study.store import Store
 from ligature.study.work import execute
 from studies import SEED, called, comparable, stored, study_file
@@ -137,6 +139,20 @@ def test_a_worker_that_restarts_slowly_is_replaced(tmp_path):
     found = rows(tmp_path / "out").to_pylist()
     assert [row["run"] for row in found] == [0, 1, 2, 3] and found[2]["status"] == "failed"
     assert all(row["status"] == "done" or row["reason"] == "its worker process died each time" for row in found)
+
+
+def test_a_row_that_is_lost_with_its_worker_is_made_again(tmp_path):
+    """A run is finished as soon as its worker says so, but the row can still be lost when the worker dies."""
+    class Lost:
+        status = "finished"
+
+        def result(self):
+            raise KilledWorker("run-1-0", None, 2)
+
+    with Client(processes=False, n_workers=1, dashboard_address=None) as client:
+        queue = _Queue(client, Study.load(study_file(tmp_path, "dies", 4, seeds="1")), iter(()))
+        assert [queue._row(1, Lost()) for _ in range(2)] == [None, None]
+        assert queue._row(1, Lost())["reason"] == "its worker process died each time"
 
 
 def test_one_thread_in_a_worker(tmp_path):
