@@ -42,6 +42,11 @@ inline Vec& operator-=(Vec& a, Vec b) noexcept { return a = a - b; }
   return sums(a.v * a.v, b.v * b.v, c.v * c.v, d.v * d.v);
 }
 [[nodiscard]] inline double norm(Vec a) noexcept { return std::sqrt(dot(a, a)); }
+/// q, shortened to the length `most` if it is longer.
+[[nodiscard]] inline Vec limited(Vec q, double most) noexcept {
+  const double size2 = dot(q, q);
+  return (size2 > most * most ? most / std::sqrt(size2) : 1.0) * q;
+}
 [[nodiscard]] inline Vec unit(Vec a) noexcept { return (1.0 / norm(a)) * a; }  ///< a / |a|; @pre a is not zero
 
 /// a x b: rotate(a * rotate(b) - rotate(a) * b), rotate = (y, z, x).

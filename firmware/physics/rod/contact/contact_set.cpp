@@ -135,8 +135,7 @@ void ContactSet::sweep(const Vec* v, TickTime& time) noexcept {
     if (pn > 0.0) {
       if constexpr (Friction) {
         const Vec pt = (c.p - pn_before * c.n) - c.inv_w * (u - un * c.n);
-        const double size2 = dot(pt, pt), most = c.mu * pn;
-        p = pn * c.n + (size2 > most * most ? most / std::sqrt(size2) : 1.0) * pt;
+        p = pn * c.n + limited(pt, c.mu * pn);
       } else {
         p = pn * c.n;
       }

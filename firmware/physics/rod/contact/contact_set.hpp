@@ -59,8 +59,8 @@ class ContactWork {
   /// The members that an image saves (image.hpp): all but those that each substep computes again.
   [[nodiscard]] static auto members(ContactWork& self) noexcept {
     auto& [watched, awake, due, close, far, measured, near, heads, corner, share, bent, gaps, columns, swept, extra,
-           step, loaded, p, plain, residual, mixing, newton, u, v_start, p_start, start_error2, turning, spin, segments,
-           radius_m, body_due, stride, first, last, overflow] = self;
+           step, loaded, p, plain, residual, mixing, newton, u, v_start, p_start, turning, spin, segments, radius_m,
+           body_due, stride, first, last, overflow] = self;
     return std::tie(newton, body_due, first, last, overflow);
   }
 
@@ -105,7 +105,6 @@ class ContactWork {
   Mixing mixing_;
   ContactNewton newton_;
   std::vector<Vec> u_, v_start_, p_start_;
-  double start_error2_ = 0.0;  // squared error of Newton's method at the impulses of the last substep, (m/s)^2
   Turning turning_;
   Spin* spin_ = nullptr;
   int segments_ = 0;
@@ -293,11 +292,9 @@ class ContactSet : public ContactMemory, public ContactWork {
   struct Search {
     const Effort& effort;
     ContactReport& report;
-    long nodes;    ///< number of nodes in the window
-    int look = 0;  ///< checks of all contacts so far
-    /// fresh: the inverse matrix Z = A^-1 was computed in this substep. resumed: the search continues an unfinished
-    /// attempt at this substep, with its impulses
-    bool fresh = false, resumed = false;
+    long nodes;          ///< number of nodes in the window
+    int look = 0;        ///< checks of all contacts so far
+    bool fresh = false;  ///< the inverse matrix Z = A^-1 was computed in this substep
     [[nodiscard]] bool can_pay(long cost) const noexcept { return report.work + cost <= effort.work; }
     [[nodiscard]] bool pay(long cost) noexcept {
       return can_pay(cost) && effort.time.allows() && ((report.work += cost), true);
@@ -317,8 +314,7 @@ class ContactSet : public ContactMemory, public ContactWork {
   const double pn = dot(p, n);
   if (pn <= 0.0) return Vec{};
   const Vec pt = p - pn * n;
-  const double size2 = dot(pt, pt), most = mu * pn;
-  return pn * n + (size2 > most * most ? most / std::sqrt(size2) : 1.0) * pt;
+  return pn * n + limited(pt, mu * pn);
 }
 
 template <bool Turns>

@@ -9,16 +9,6 @@
 #include "firmware/physics/rod/tuning.hpp"
 
 namespace ligature::physics::rod {
-namespace {
-
-constexpr double kUnknown = 1e300;  // squared error that has not been computed
-
-double square_of_enough(const Effort& effort) noexcept {
-  const double enough = tuning.newton_near * effort.enough_m_per_s;
-  return enough * enough;
-}
-
-}  // namespace
 
 // Gives the impulses p_ to the contacts in Newton's system, and updates the velocities v with the present matrix A.
 void ContactSet::take_impulses(BandSolver& solver, Vec* v) noexcept {
@@ -69,16 +59,15 @@ std::optional<Outcome> ContactSet::step_on(Search& search) noexcept {
   ContactReport& report = search.report;
   const double settled = tuning.newton_near * effort.settled_m_per_s, settled2 = settled * settled;
   const double old = tuning.newton_near * tuning.newton_near * settled, old2 = old * old;
-  const double enough2 = square_of_enough(effort);
+  const double enough = tuning.newton_near * effort.enough_m_per_s, enough2 = enough * enough;
   const Contact* const rows = contacts_.data();
   Vec *const p = p_.data(), *const u = u_.data();
   const auto wait = [&] { return newton_.put_off(p), Outcome::kLater; };
-  double best2 = kUnknown;  // smallest squared residual; its impulses are in plain_
+  double best2 = 1e300;  // smallest squared residual; its impulses are in plain_
   for (int step = 0;; ++step) {
     const double error2 = newton_.read<Friction>(rows, p, u);
     const bool begins = step == 0 && search.look == 0;
     if (step == 0) {  // u was computed with the present matrix A
-      if (begins && !search.resumed) start_error2_ = error2;
       report.change_m_per_s = std::sqrt(error2);
       if (error2 < (begins ? settled2 : old2)) return Outcome::kSettled;
     }
@@ -111,7 +100,6 @@ std::optional<Outcome> ContactSet::step_on(Search& search) noexcept {
 
 template <bool Friction>
 Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* v, ContactReport& report) noexcept {
-  start_error2_ = kUnknown;
   Search search{effort, report, window_last_ - window_first_ + 1};
   const auto answer = [&] {
     report.work += price::answer(newton_.loaded(), search.nodes);
@@ -122,8 +110,7 @@ Outcome ContactSet::newton_steps(BandSolver& solver, const Effort& effort, Vec* 
   } else if (!renew_matrix(solver, search)) {
     return Outcome::kLater;
   }
-  search.resumed = newton_.resume(p_.data());
-  if (search.resumed) answer();
+  if (newton_.resume(p_.data())) answer();
   for (;; ++search.look) {  // ends because each look costs work
     if (search.look == tuning.stale && !search.fresh && !renew_matrix(solver, search)) break;
     const Outcome looked = look_at_all(solver, v, search);
@@ -157,10 +144,7 @@ Outcome ContactSet::settle_directly(BandSolver& solver, const Effort& effort, Ve
   }
   for (int k = 0; k < rows_; ++k) contacts_[static_cast<std::size_t>(k)].p.v = p_start_[static_cast<std::size_t>(k)].v;
   std::copy(v_start_.begin(), v_start_.begin() + nodes, v + window_first_);
-  if (start_error2_ >= square_of_enough(effort)) return outcome;
-  newton_.give_up();  // the initial impulses already meet the looser tolerance
-  report.change_m_per_s = std::sqrt(start_error2_);
-  return Outcome::kSettled;
+  return outcome;
 }
 
 template Outcome ContactSet::settle_directly<true>(BandSolver&, const Effort&, Vec*, ContactReport&) noexcept;

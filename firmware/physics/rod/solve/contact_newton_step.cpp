@@ -46,8 +46,7 @@ void ContactNewton::sweep(const Contact* rows, Vec* p, Vec* u) noexcept {
     const double un = dot(now, c.n), pn = dot(p[k], c.n);
     const double to_n = std::max(0.0, pn - slot.r_n * (un + c.soft * pn - c.target));
     const Vec q = (p[k] - pn * c.n) - slot.r_t * (now - un * c.n);
-    const double size2 = dot(q, q), most = Friction ? c.mu * to_n : 0.0;
-    const Vec to = to_n * c.n + (size2 > most * most ? most / std::sqrt(size2) : 1.0) * q, step = to - p[k];
+    const Vec to = to_n * c.n + limited(q, Friction ? c.mu * to_n : 0.0), step = to - p[k];
     if (dot(step, step) == 0.0) continue;
     p[k].v = to.v;
     answer<false>(at, step, at, Vec{});
