@@ -8,6 +8,8 @@ namespace {
 
 rt::Culprit hand_alone(std::size_t h) noexcept { return {.hand = static_cast<std::int8_t>(h)}; }
 
+rt::Culprit joint_of(std::size_t h, std::int8_t joint) noexcept { return {static_cast<std::int8_t>(h), joint, 0}; }
+
 rt::Culprit drive_of(std::size_t h, const rt::HandReading& reading) noexcept {
   return {static_cast<std::int8_t>(h), reading.bad_joint, reading.drive_error};
 }
@@ -134,32 +136,31 @@ Controller::Found Controller::find_fault(const TickInput& in) const noexcept {
   for (std::size_t h = 0; h < rt::kHands; ++h) {
     const Fault foreign = fault_of(hands[h].foreign);
     if (foreign != Fault::kNone) return {foreign, hand_alone(h)};
-    if (torque_[h].is_astray()) return {Fault::kTorqueAstray, hand_alone(h)};
+    if (torque_[h].is_astray()) return {Fault::kTorqueAstray, joint_of(h, torque_[h].joint())};
   }
   if (!in.thread_finite) return {Fault::kPhysicsDiverged};
   if (last_tick_ >= 0 && in.tick - last_tick_ - 1 >= settings_.watchdog_ticks) return {Fault::kOverrun};
   if (in.thread_late_ticks >= settings_.watchdog_ticks) return {Fault::kThreadLate};
   if (state_ == State::kOff) return {};
   for (std::size_t h = 0; h < rt::kHands; ++h) {
-    const Fault fault = find_hand_fault(h, hands[h]);
-    const bool is_of_drive = fault == Fault::kTpdoTooOld || fault == Fault::kDriveFault;
-    if (fault != Fault::kNone) return {fault, is_of_drive ? drive_of(h, hands[h]) : hand_alone(h)};
+    if (const Found found = find_hand_fault(h, hands[h]); found.fault != Fault::kNone) return found;
     if (loss_[h].is_lossy()) return {Fault::kFramesLost, hand_alone(h)};
   }
   return {};
 }
 
-Fault Controller::find_hand_fault(std::size_t h, const rt::HandReading& reading) const noexcept {
+Controller::Found Controller::find_hand_fault(std::size_t h, const rt::HandReading& reading) const noexcept {
   const HandControl& hand = hands_[h];
-  if (age_[h].is_too_old(settings_.watchdog_ticks)) return Fault::kTpdoTooOld;
-  if (reading.drive_fault || !reading.enabled) return Fault::kDriveFault;
-  if (reading.buttons_stuck) return Fault::kButtonsStuck;
-  if (hand.encoder_fault() != Fault::kNone) return hand.encoder_fault();
-  if (!hand.is_finite()) return Fault::kNonFinite;
-  if (hand.overtime_ticks() >= kMostOvertimeTicks) return Fault::kForceStays;
+  if (age_[h].is_too_old(settings_.watchdog_ticks)) return {Fault::kTpdoTooOld, drive_of(h, reading)};
+  if (reading.drive_fault || !reading.enabled) return {Fault::kDriveFault, drive_of(h, reading)};
+  if (reading.buttons_stuck) return {Fault::kButtonsStuck, hand_alone(h)};
+  const JointFault encoder = hand.encoder_fault();
+  if (encoder.fault != Fault::kNone) return {encoder.fault, joint_of(h, encoder.joint)};
+  if (!hand.is_finite()) return {Fault::kNonFinite, hand_alone(h)};
+  if (hand.overtime_ticks() >= kMostOvertimeTicks) return {Fault::kForceStays, hand_alone(h)};
   if (hand.speed_m_per_s() > kVelocityFault * settings_.device.velocity_limit_m_per_s)
-    return hand.is_catching_up() ? Fault::kSamplesBurst : Fault::kVelocityLimit;
-  return Fault::kNone;
+    return {hand.is_catching_up() ? Fault::kSamplesBurst : Fault::kVelocityLimit, hand_alone(h)};
+  return {};
 }
 
 bool Controller::is_up(std::size_t h, const rt::HandReading& reading) const noexcept {

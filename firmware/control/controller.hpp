@@ -85,7 +85,7 @@ class Controller {
     rt::Culprit culprit{};
   };
   [[nodiscard]] Found find_fault(const TickInput& in) const noexcept;
-  [[nodiscard]] Fault find_hand_fault(std::size_t h, const rt::HandReading& reading) const noexcept;
+  [[nodiscard]] Found find_hand_fault(std::size_t h, const rt::HandReading& reading) const noexcept;
   [[nodiscard]] bool is_up(std::size_t h, const rt::HandReading& reading) const noexcept;
   [[nodiscard]] rt::Culprit find_delay(const rt::RigReading& reading) const noexcept;
   void step_state(const TickInput& in) noexcept;

@@ -43,28 +43,33 @@ class EncoderWatch {
   /// @param free for each joint: whether it is far from its stops
   /// @param torque acting on each joint, as a share of the rated torque
   /// @return the fault found; the caller latches it
-  [[nodiscard]] Fault add(const std::array<double, kJoints>& counts, std::int64_t gap,
-                          const std::array<bool, kJoints>& free,
-                          const std::array<double, kJoints>& torque = {}) noexcept {
-    if (stands_under_torque(counts, free, torque)) return Fault::kEncoderFrozen;
+  [[nodiscard]] JointFault add(const std::array<double, kJoints>& counts, std::int64_t gap,
+                               const std::array<bool, kJoints>& free,
+                               const std::array<double, kJoints>& torque = {}) noexcept {
+    if (const std::size_t stands = stands_under_torque(counts, free, torque); stands < kJoints)
+      return fault_of_joint(Fault::kEncoderFrozen, stands);
     if (gap != 1) count_ = 0, suspect_ = kJoints;
     newest_ = (newest_ + 1) % kLength;
     for (std::size_t j = 0; j < kJoints; ++j) x_[j][newest_] = counts[j];
     count_ = std::min(count_ + 1, kLength);
-    if (count_ >= 2 * kWindow && is_frozen(free)) return Fault::kEncoderFrozen;
-    return reversal(free) >= 1.0 ? Fault::kAxisReversed : Fault::kNone;
+    if (count_ >= 2 * kWindow && is_frozen(free)) return fault_of_joint(Fault::kEncoderFrozen, suspect_);
+    std::size_t joint = 0;
+    return reversal(free, &joint) >= 1.0 ? fault_of_joint(Fault::kAxisReversed, joint) : JointFault{};
   }
 
   /// How strongly the newest samples look like an encoder that has begun to count backwards; from 1 on, this counts as
   /// a fault. The value is the speed at the suspected turn (MirroredTurn::speed()) divided by the least speed at which
-  /// the test is reliable; the largest over all joints and window lengths.
-  [[nodiscard]] double reversal(const std::array<bool, kJoints>& free) const noexcept {
+  /// the test is reliable; the largest over all joints and window lengths. @param joint  set to the joint with this
+  /// value, if it is above 0
+  double reversal(const std::array<bool, kJoints>& free, std::size_t* joint = nullptr) const noexcept {
     double most = 0.0;
     for (std::size_t j = 0; j < kJoints; ++j) {
       for (const MirroredTurn::Look& look : MirroredTurn::kLooks) {
         if (!free[j] || count_ < 2 * look.half) continue;
         const double share = MirroredTurn::speed([&](std::size_t ago) { return at(j, ago); }, look) / look.moving;
-        if (share > most && (look.alone || other_moves_on(j))) most = share;
+        if (share <= most || !(look.alone || other_moves_on(j))) continue;
+        most = share;
+        if (joint != nullptr) *joint = j;
       }
     }
     return most;
@@ -82,13 +87,14 @@ class EncoderWatch {
     double count = 0.0, low = 0.0, high = 0.0, elsewhere = 0.0;
     int samples = 0;
   };
-  [[nodiscard]] bool stands_under_torque(const std::array<double, kJoints>& counts,
-                                         const std::array<bool, kJoints>& free,
-                                         const std::array<double, kJoints>& torque) noexcept {
+  /// Test "frozen at rest". @return the joint, or kJoints
+  [[nodiscard]] std::size_t stands_under_torque(const std::array<double, kJoints>& counts,
+                                                const std::array<bool, kJoints>& free,
+                                                const std::array<double, kJoints>& torque) noexcept {
     double travel = 0.0;
     for (std::size_t j = 0; j < kJoints; ++j) travel += std::abs(counts[j] - last_[j]);
     if (!seen_) travel = 0.0;
-    bool stands = false;
+    std::size_t stands = kJoints;
     for (std::size_t j = 0; j < kJoints; ++j) {
       Rest& r = rest_[j];
       if (!seen_ || counts[j] != r.count || !free[j]) r = {counts[j], torque[j], torque[j], 0.0, 0};
@@ -97,7 +103,7 @@ class EncoderWatch {
       r.elsewhere += travel;
       ++r.samples;
       if (r.high - r.low < kPushed || r.elsewhere < kElsewhere || r.samples < kRested) continue;
-      stands = true;
+      stands = std::min(stands, j);
       r = {counts[j], torque[j], torque[j], 0.0, 0};  // reported; the test starts again from here
     }
     last_ = counts;

@@ -1,6 +1,7 @@
 #pragma once
 // Fault numbers. They are part of the interface (docs/architecture.md), so a number is never reused for another fault.
 
+#include <cstddef>
 #include <cstdint>
 
 #include "firmware/rt/rig_io.hpp"
@@ -29,6 +30,16 @@ enum class Fault : std::int16_t {
   kPhysicsDiverged = 40,  ///< the thread's state is not finite
   kThreadLate = 41,       ///< the physics is behind by as many ticks as the watchdog allows
 };
+
+/// A fault of one joint's encoder or drive.
+struct JointFault {
+  Fault fault = Fault::kNone;
+  std::int8_t joint = -1;  ///< -1: no fault, or not known
+  bool operator==(const JointFault&) const = default;
+};
+[[nodiscard]] constexpr JointFault fault_of_joint(Fault fault, std::size_t joint) noexcept {
+  return {fault, static_cast<std::int8_t>(joint)};
+}
 
 [[nodiscard]] constexpr Fault fault_of(rt::Foreign kind) noexcept {
   switch (kind) {

@@ -79,7 +79,7 @@ class HandControl {
   void drop() noexcept {
     engagement_.drop();
     end_move();
-    move_fault_ = Fault::kNone;
+    move_fault_ = {};
   }
   /// Guides the hand along a jerk-limited path with at most kLead_N of force and kLeadEnergy_J of energy, once the gain
   /// is 1. The move ends with the path, or earlier if the hand holds the thread, the clutch is pressed, the tip is
@@ -106,8 +106,8 @@ class HandControl {
   [[nodiscard]] const HandState& state() const noexcept { return state_; }
   [[nodiscard]] bool is_finite() const noexcept { return finite_; }
   /// Encoder fault found in the last sample, or by a guided move that ended at that sample.
-  [[nodiscard]] Fault encoder_fault() const noexcept {
-    return move_fault_ != Fault::kNone ? move_fault_ : encoder_fault_;
+  [[nodiscard]] JointFault encoder_fault() const noexcept {
+    return move_fault_ != JointFault{} ? move_fault_ : encoder_fault_;
   }
   /// Whether samples may be coming in a burst, in which one period brings several periods of motion. That happens after
   /// the process of a simulated hand has stood still. True after a gap in the samples, for as many periods as the gap
@@ -159,7 +159,7 @@ class HandControl {
   MoveCheck move_check_;
   Move move_ = Move::kNone;
   bool leading_ = false;  // the path has begun
-  Fault move_fault_ = Fault::kNone;
+  JointFault move_fault_;
   Vec3 park_m_, scene_origin_W_m_;
   std::array<WindowVelocity, 3> velocity_;
   HandState state_;
@@ -173,7 +173,7 @@ class HandControl {
   std::int64_t catching_up_ = 0;  // samples for which is_catching_up() holds
   int overtime_ticks_ = 0;
   EncoderWatch watch_;
-  Fault encoder_fault_ = Fault::kNone;
+  JointFault encoder_fault_;
 };
 
 }  // namespace ligature::control

@@ -30,17 +30,21 @@ class MoveCheck {
     const Vec3 dq = period_s * (inverse_jacobian * v_m_per_s);
     if (dq.allFinite()) asked_rad_ += dq;
   }
-  [[nodiscard]] Fault judge(const JointAngles& q_rad, double count_rad) const noexcept {
+  [[nodiscard]] JointFault judge(const JointAngles& q_rad, double count_rad) const noexcept {
     const Vec3 went = vector_of(q_rad) - from_rad_;
-    bool stands = false, follows = false;
-    for (Eigen::Index j = 0; j < 3; ++j) {
+    bool follows = false;
+    JointFault frozen;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto j = static_cast<Eigen::Index>(k);
       const double enough_rad = kEnough * count_rad;
-      if (went[j] * asked_rad_[j] < 0.0 && std::abs(went[j]) >= enough_rad) return Fault::kAxisReversed;
+      if (went[j] * asked_rad_[j] < 0.0 && std::abs(went[j]) >= enough_rad)
+        return fault_of_joint(Fault::kAxisReversed, k);
       if (std::abs(asked_rad_[j]) < enough_rad) continue;
       if (went[j] / asked_rad_[j] >= kFollowed) follows = true;
-      if (std::abs(went[j]) <= kStill * count_rad) stands = true;
+      if (frozen.joint < 0 && std::abs(went[j]) <= kStill * count_rad)
+        frozen = fault_of_joint(Fault::kEncoderFrozen, k);
     }
-    return stands && follows ? Fault::kEncoderFrozen : Fault::kNone;
+    return follows ? frozen : JointFault{};
   }
 
  private:

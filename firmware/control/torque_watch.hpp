@@ -33,6 +33,7 @@ class TorqueWatch {
   /// (SampleAge)
   void look(const rt::HandReading& reading, bool fresh) noexcept {
     if (!fresh) return;
+    joint_ = -1;
     strange_ = is_strange(reading) ? std::min(strange_ + 1, kStrange) : 0;
   }
   void sent(const std::array<double, rt::kJoints>& torque_Nm) noexcept {
@@ -48,6 +49,8 @@ class TorqueWatch {
     }
   }
   [[nodiscard]] bool is_astray() const noexcept { return strange_ >= kStrange; }
+  /// Joint whose torque was outside in the last sample; -1: none, or the drive told it by a statusword bit.
+  [[nodiscard]] std::int8_t joint() const noexcept { return joint_; }
 
  private:
   static constexpr std::size_t kBlocks = 8;
@@ -55,7 +58,7 @@ class TorqueWatch {
     double low_Nm = 0.0, high_Nm = 0.0;
   };
 
-  [[nodiscard]] bool is_strange(const rt::HandReading& reading) const noexcept {
+  [[nodiscard]] bool is_strange(const rt::HandReading& reading) noexcept {
     bool strange = reading.torque_astray;
     for (std::size_t j = 0; j < rt::kJoints; ++j) {
       const double told_Nm = std::isfinite(reading.measured_Nm[j]) ? reading.measured_Nm[j] : reading.torque_Nm[j];
@@ -65,7 +68,9 @@ class TorqueWatch {
         may.low_Nm = std::min(may.low_Nm, block[j].low_Nm);
         may.high_Nm = std::max(may.high_Nm, block[j].high_Nm);
       }
-      strange = strange || told_Nm < may.low_Nm - tolerance_Nm_ || told_Nm > may.high_Nm + tolerance_Nm_;
+      if (told_Nm >= may.low_Nm - tolerance_Nm_ && told_Nm <= may.high_Nm + tolerance_Nm_) continue;
+      strange = true;
+      joint_ = static_cast<std::int8_t>(j);
     }
     return strange;
   }
@@ -75,6 +80,7 @@ class TorqueWatch {
   std::size_t newest_ = 0;
   std::array<std::array<Range, rt::kJoints>, kBlocks> blocks_{};  // ring; the newest block is still being filled
   int strange_ = 0;
+  std::int8_t joint_ = -1;
 };
 
 }  // namespace ligature::control

@@ -40,7 +40,7 @@ Honest honest(HonestHand::Kind kind, double hours, std::uint64_t seed) {
     double most = 0.0;
     bool frozen = false;
     for (int t = 0; t < kRunTicks; ++t) {
-      const auto fault = watch.add(hand.next(), 1, kFree);
+      const auto fault = watch.add(hand.next(), 1, kFree).fault;
       frozen = frozen || fault == control::Fault::kEncoderFrozen;
       most = std::max(most, watch.reversal(kFree));
     }

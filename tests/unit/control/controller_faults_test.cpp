@@ -78,6 +78,7 @@ TEST(ControllerFaults, SomebodyElseOnTheBusIsAFaultInEveryStateAndNoResetLeavesI
         rig.ticks(by_torque ? 2 : 1);
         const auto fault = by_torque ? Fault::kTorqueAstray : Fault::kForeignTorque;
         ASSERT_EQ(rig.controller.fault(), fault) << name(state);
+        EXPECT_EQ(rig.controller.culprit(), (rt::Culprit{0, static_cast<std::int8_t>(by_torque ? 1 : -1), 0}));
         hand.foreign = rt::Foreign::kNone;
         hand.torque_Nm = {0.0, 0.0, 0.0};
         rig.controller.command(rt::CommandKind::kResetFault);

@@ -284,6 +284,7 @@ TEST(Controller, SamplesOfUnknownTimeAccuseNoEncoder) {
       rig.tick();
     }
     EXPECT_EQ(rig.controller.fault(), late ? Fault::kNone : Fault::kAxisReversed);
+    EXPECT_EQ(rig.controller.culprit(), late ? rt::Culprit{} : (rt::Culprit{0, 0, 0})) << "left hand, waist";
   }
 }
 

@@ -25,13 +25,17 @@ Counts counted(Counts c) {
   return c;
 }
 
-/// The fault and the number of samples after t = 0 at which it was reported.
-std::pair<Fault, int> watch(const std::function<Counts(int)>& shown, int until = 300,
-                            std::array<bool, 3> free = kFree) {
+/// The fault, the number of samples after t = 0 at which it was reported, and the joint.
+struct Report {
+  Fault first = Fault::kNone;
+  int second = 0;
+  int joint = -1;
+};
+Report watch(const std::function<Counts(int)>& shown, int until = 300, std::array<bool, 3> free = kFree) {
   EncoderWatch w;
   for (int t = -200; t < until; ++t) {
-    const Fault f = w.add(shown(t), 1, free);
-    if (f != Fault::kNone) return {f, t};
+    const JointFault f = w.add(shown(t), 1, free);
+    if (f.fault != Fault::kNone) return {f.fault, t, f.joint};
   }
   return {Fault::kNone, until};
 }
@@ -42,25 +46,27 @@ TEST(EncoderWatch, AnHonestHandIsNotSuspected) {
 
 TEST(EncoderWatch, AFrozenJointIsSeenWhileTheOthersMoveOn) {
   for (const std::size_t j : {1U, 2U}) {  // joint 0 is too slow to decide
-    const auto [fault, when] = watch([j](int t) {
+    const auto [fault, when, joint] = watch([j](int t) {
       Counts c = counted(motion(t));
       if (t > 0) c[j] = counted(motion(0))[j];
       return c;
     });
     EXPECT_EQ(fault, Fault::kEncoderFrozen) << j;
     EXPECT_LE(when, 120) << j;
+    EXPECT_EQ(joint, static_cast<int>(j));
   }
 }
 
 TEST(EncoderWatch, AReversedJointIsSeen) {
   for (std::size_t j = 0; j < 3; ++j) {
-    const auto [fault, when] = watch([j](int t) {
+    const auto [fault, when, joint] = watch([j](int t) {
       Counts c = counted(motion(t));
       if (t > 0) c[j] = 2.0 * counted(motion(0))[j] - c[j];
       return c;
     });
     EXPECT_EQ(fault, Fault::kAxisReversed) << j;
     EXPECT_LE(when, 40) << j;
+    EXPECT_EQ(joint, static_cast<int>(j));
   }
 }
 
@@ -86,7 +92,7 @@ TEST(EncoderWatch, HandsThatTurnStopAndTrembleAreNotSuspected) {
       EncoderWatch w;
       bool is_suspected = false;
       for (int t = 0; t < 5000 && !is_suspected; ++t) {
-        is_suspected = w.add(hand.next(), 1, kFree) != Fault::kNone;
+        is_suspected = w.add(hand.next(), 1, kFree).fault != Fault::kNone;
         most = std::max(most, w.reversal(kFree));
       }
       alarms += is_suspected ? 1 : 0;
@@ -110,7 +116,7 @@ TEST(EncoderWatch, ATurnThatTakesItsTimeIsNotSuspected) {
         const double s = std::abs(t);
         return s < u / a ? 0.5 * a * s * s : u * s - 0.5 * u * u / a;
       };
-      const auto [fault, when] = watch([&](int t) { return counted({along(t + at_rest), drift * t, 0.0}); });
+      const auto [fault, when, none] = watch([&](int t) { return counted({along(t + at_rest), drift * t, 0.0}); });
       EXPECT_EQ(fault, Fault::kNone) << 50.0 * a << " m/s2 at " << u << " counts a period, told at " << when;
     }
   }
@@ -129,7 +135,7 @@ TEST(EncoderWatch, AReversalIsToldTheSoonerTheFaster) {
         if (t > 0) c[1] = 2.0 * std::round(at) - c[1];
         return c;
       };
-      const auto [fault, when] = watch(shown);
+      const auto [fault, when, joint] = watch(shown);
       EXPECT_EQ(fault, Fault::kAxisReversed) << u;
       EXPECT_LE(when, kUntil[i].second) << u;
     }
@@ -153,7 +159,9 @@ TEST(EncoderWatch, AnEncoderThatNeverMovedIsSeenUnderTorque) {  // 0.3 of the ra
         c[j] = frozen || t < 250 ? 0.0 : 1.0;  // a single count proves that the encoder works
         std::array<double, 3> torque{};
         torque[j] = 0.3 * std::min(1.0, t / 450.0);
-        fault = w.add(c, 1, kFree, torque);
+        const JointFault told = w.add(c, 1, kFree, torque);
+        fault = told.fault;
+        EXPECT_EQ(told.joint, fault != Fault::kNone ? static_cast<int>(j) : -1);
       }
       EXPECT_EQ(fault, frozen ? Fault::kEncoderFrozen : Fault::kNone) << j;
     }
@@ -164,7 +172,7 @@ TEST(EncoderWatch, AJointThatNobodyPushesMayRestForEver) {
   EncoderWatch w;
   for (int t = 0; t < 3000; ++t) {
     const int tens = t / 10;
-    ASSERT_EQ(w.add({0.0, 3.0 * tens, 0.0}, 1, kFree, {0.05 * std::sin(0.01 * t), 0.5, 0.0}), Fault::kNone) << t;
+    ASSERT_EQ(w.add({0.0, 3.0 * tens, 0.0}, 1, kFree, {0.05 * std::sin(0.01 * t), 0.5, 0.0}), JointFault{}) << t;
   }
 }
 
@@ -178,7 +186,7 @@ TEST(EncoderWatch, AGapStartsAnew) {
       for (int t = -200; t < 200 && fault == Fault::kNone; ++t) {
         Counts c = counted(motion(t)), then = counted(motion(0));
         if (t > 0) c[2] = reversed ? 2.0 * then[2] - c[2] : then[2];
-        fault = w.add(c, t % 20 == 0 ? gap : 1, kFree);
+        fault = w.add(c, t % 20 == 0 ? gap : 1, kFree).fault;
       }
       EXPECT_EQ(fault, gap != 1 ? Fault::kNone : reversed ? Fault::kAxisReversed : Fault::kEncoderFrozen) << gap;
     }
@@ -199,7 +207,7 @@ TEST(EncoderWatch, ASuspicionEndsWithAGap) {
   for (int t = -200; t < gap + 100; ++t) {
     Counts c = frozen(t);
     c[2] += std::round(0.3 * std::clamp(t - gap, 0, 30));
-    ASSERT_EQ(w.add(c, t == gap ? 2 : 1, kFree), Fault::kNone) << t;
+    ASSERT_EQ(w.add(c, t == gap ? 2 : 1, kFree), JointFault{}) << t;
   }
 }
 
@@ -213,7 +221,8 @@ struct UnderTorque {
   [[nodiscard]] int told_after() const {
     EncoderWatch w;
     for (int t = 0; t < samples; ++t) {
-      const Fault fault = w.add({0.0, per_sample * t, per_sample * t}, 1, {free, true, true}, {t > 0 ? torque : 0.0});
+      const Fault fault =
+          w.add({0.0, per_sample * t, per_sample * t}, 1, {free, true, true}, {t > 0 ? torque : 0.0}).fault;
       if (fault != Fault::kNone) return fault == Fault::kEncoderFrozen ? t + 1 : -1;
     }
     return 0;

@@ -143,6 +143,7 @@ TEST(TorqueWatch, APushThatNobodyAskedForIsFoundInItsSecondSample) {
       EXPECT_FALSE(watch.is_astray()) << "the same sample again";
       watch.look(reading_of(told, 1));
       EXPECT_TRUE(watch.is_astray()) << "a later one that came a period late";
+      EXPECT_EQ(watch.watch.joint(), static_cast<int>(joint));
     }
   }
 }
