@@ -31,10 +31,10 @@ enum class Fault : std::int16_t {
   kThreadLate = 41,       ///< the physics is behind by as many ticks as the watchdog allows
 };
 
-/// A fault of one joint's encoder or drive.
+/// A fault of one joint's encoder.
 struct JointFault {
   Fault fault = Fault::kNone;
-  std::int8_t joint = -1;  ///< -1: no fault, or not known
+  std::int8_t joint = -1;  ///< -1: no fault
   bool operator==(const JointFault&) const = default;
 };
 [[nodiscard]] constexpr JointFault fault_of_joint(Fault fault, std::size_t joint) noexcept {

@@ -49,7 +49,7 @@ class TorqueWatch {
     }
   }
   [[nodiscard]] bool is_astray() const noexcept { return strange_ >= kStrange; }
-  /// Joint whose torque was outside in the last sample; -1: none, or the drive told it by a statusword bit.
+  /// First joint whose torque was outside in the last sample; -1: none, or only a statusword bit told it.
   [[nodiscard]] std::int8_t joint() const noexcept { return joint_; }
 
  private:
@@ -70,7 +70,7 @@ class TorqueWatch {
       }
       if (told_Nm >= may.low_Nm - tolerance_Nm_ && told_Nm <= may.high_Nm + tolerance_Nm_) continue;
       strange = true;
-      joint_ = static_cast<std::int8_t>(j);
+      if (joint_ < 0) joint_ = static_cast<std::int8_t>(j);
     }
     return strange;
   }

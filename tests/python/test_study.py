@@ -4,6 +4,7 @@ import json
 import math
 import os
 import random
+from concurrent.futures import CancelledError
 
 import dask
 import pytest
@@ -141,13 +142,14 @@ def test_a_worker_that_restarts_slowly_is_replaced(tmp_path):
     assert all(row["status"] == "done" or row["reason"] == "its worker process died each time" for row in found)
 
 
-def test_a_row_that_is_lost_with_its_worker_is_made_again(tmp_path):
+@pytest.mark.parametrize("why", [KilledWorker("run-1-0", None, 2), CancelledError()])
+def test_a_row_that_is_lost_with_its_worker_is_made_again(tmp_path, why):
     """A run is finished as soon as its worker says so, but the row can still be lost when the worker dies."""
     class Lost:
         status = "finished"
 
         def result(self):
-            raise KilledWorker("run-1-0", None, 2)
+            raise why
 
     with Client(processes=False, n_workers=1, dashboard_address=None) as client:
         queue = _Queue(client, Study.load(study_file(tmp_path, "dies", 4, seeds="1")), iter(()))

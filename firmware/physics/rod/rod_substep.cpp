@@ -115,8 +115,9 @@ std::optional<Effort> Rod::choose_rows(double dt_s) noexcept {
   const long rows = contacts_.rows(), nodes = contacts_.window_last() - contacts_.window_first() + 1;
   const long least = price::pass(rows, rows, nodes);
   rows_cost_ = rows > 0 ? price::rows(rows, nodes) + least : 0;
-  return Effort{work_.time(), numerics_.max_passes, std::max(least, allowed.passes - price::rows(rows, nodes)),
-                tolerance({pace_m_per_s_, stir_m_per_s_, motion_.fastest()}, alone_, numerics_)};
+  return Effort{
+      work_.time(), numerics_.max_passes, std::max(least, allowed.passes - price::rows(rows, nodes)),
+      tolerance({.hands = pace_m_per_s_, .own = stir_m_per_s_, .fastest = motion_.fastest()}, alone_, numerics_)};
 }
 
 // Newton's method with all the work that is left. @return kUnsolved when sweeps must solve the substep, kLater when it

@@ -51,7 +51,8 @@ struct Tuning {
   int stale = 3;
   double moved = 0.16;
   /// Proximal term of Newton's method, relative to the contact's own response along the normal, and across it twice as
-  /// much; multiplied by the number of steps that have increased the residual (contact_newton.hpp). Test:
+  /// much; multiplied by the number of rises of the residual (contact_newton.hpp). With 1.5e-3 holds lose 0.14 % of
+  /// their time instead of 0.06, with 7.5e-4 pulls of surgeon's knots 1.0 % instead of 0.9. Test:
   /// Labour.IsNeverUsedUpByCycles
   double proximal = 1e-3;
 

@@ -70,13 +70,11 @@ class _Queue:
 
     def _row(self, run: int, future: Future) -> dict[str, Any] | None:
         """The row of a run; None: do it again."""
-        if future.status in ("finished", "error"):
-            try:
+        if future.status == "finished":
+            with contextlib.suppress(KilledWorker, CancelledError):  # its row is lost if its worker dies at once
                 return future.result()
-            except (KilledWorker, CancelledError):  # also of a finished run: its row is lost if its worker dies at once
-                pass
-            except Exception as why:
-                return _failed(self._study, run, f"{type(why).__name__}: {why}".replace("\n", " ")[:500])
+        elif future.status == "error" and not isinstance(why := future.exception(), KilledWorker):
+            return _failed(self._study, run, f"{type(why).__name__}: {why}".replace("\n", " ")[:500])
         # A worker that dies takes the blame also for a run that only waited on it, so each gets two more chances.
         self._lost[run] = self._lost.get(run, 0) + 1
         return None if self._lost[run] < 3 else _failed(self._study, run, "its worker process died each time")

@@ -277,14 +277,14 @@ TEST(Controller, SamplesOfUnknownTimeAccuseNoEncoder) {
     const double count = device::omni().rad_per_count();
     for (int i = 0; i < 200 && rig.controller.fault() == Fault::kNone; ++i) {
       for (auto& hand : rig.in.reading.hand) {
-        hand.q_rad[0] += (i < 100 ? 1.5 : -1.5) * count;  // reverses within one sample
-        hand.q_rad[1] += 1.0 * count;
+        hand.q_rad[0] += 1.0 * count;
+        hand.q_rad[1] += (i < 100 ? 1.5 : -1.5) * count;  // reverses within one sample
       }
       rig.in.late = late && i % 20 == 0;
       rig.tick();
     }
     EXPECT_EQ(rig.controller.fault(), late ? Fault::kNone : Fault::kAxisReversed);
-    EXPECT_EQ(rig.controller.culprit(), late ? rt::Culprit{} : (rt::Culprit{0, 0, 0})) << "left hand, waist";
+    EXPECT_EQ(rig.controller.culprit(), late ? rt::Culprit{} : (rt::Culprit{0, 1, 0})) << "left hand, shoulder";
   }
 }
 

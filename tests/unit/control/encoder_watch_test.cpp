@@ -27,8 +27,8 @@ Counts counted(Counts c) {
 
 /// The fault, the number of samples after t = 0 at which it was reported, and the joint.
 struct Report {
-  Fault first = Fault::kNone;
-  int second = 0;
+  Fault fault = Fault::kNone;
+  int when = 0;
   int joint = -1;
 };
 Report watch(const std::function<Counts(int)>& shown, int until = 300, std::array<bool, 3> free = kFree) {
@@ -41,7 +41,7 @@ Report watch(const std::function<Counts(int)>& shown, int until = 300, std::arra
 }
 
 TEST(EncoderWatch, AnHonestHandIsNotSuspected) {
-  EXPECT_EQ(watch([](int t) { return counted(motion(t)); }).first, Fault::kNone);
+  EXPECT_EQ(watch([](int t) { return counted(motion(t)); }).fault, Fault::kNone);
 }
 
 TEST(EncoderWatch, AFrozenJointIsSeenWhileTheOthersMoveOn) {
@@ -76,7 +76,7 @@ TEST(EncoderWatch, AJointInItsStopIsNoFault) {
     if (t > 0) c[1] = counted(motion(0))[1];
     return c;
   };
-  EXPECT_EQ(watch(stop, 300, {true, false, true}).first, Fault::kNone);
+  EXPECT_EQ(watch(stop, 300, {true, false, true}).fault, Fault::kNone);
 }
 
 /// Twenty minutes of normal hand motions. In 300 hours of them, 60 of abrupt ones, there was one false alarm, at an
@@ -145,7 +145,7 @@ TEST(EncoderWatch, AReversalIsToldTheSoonerTheFaster) {
 TEST(EncoderWatch, ASlowJointIsJudgedOnlyWhileAnotherMovesOn) {
   for (const double others : {0.0, 0.6}) {
     const auto shown = [&](int t) { return counted({others * t, t > 0 ? -0.5 * t : 0.5 * t, 0.0}); };
-    EXPECT_EQ(watch(shown).first, others > 0.0 ? Fault::kAxisReversed : Fault::kNone);
+    EXPECT_EQ(watch(shown).fault, others > 0.0 ? Fault::kAxisReversed : Fault::kNone);
   }
 }
 
@@ -201,7 +201,7 @@ TEST(EncoderWatch, ASuspicionEndsWithAGap) {
     if (t > 0) c[2] = counted(motion(0))[2];
     return c;
   };
-  const int gap = watch(frozen).second - 5;  // five samples before the fault would be reported
+  const int gap = watch(frozen).when - 5;  // five samples before the fault would be reported
   ASSERT_LE(gap, 120);
   EncoderWatch w;
   for (int t = -200; t < gap + 100; ++t) {
@@ -249,8 +249,8 @@ TEST(EncoderWatch, AJointInItsStopMayBePushedAndMayBounce) {
     if (t > 0) c[1] = 2.0 * counted(motion(0))[1] - c[1];
     return c;
   };
-  EXPECT_EQ(watch(bounce, 300, {true, false, true}).first, Fault::kNone);
-  EXPECT_EQ(watch(bounce, 300).first, Fault::kAxisReversed);
+  EXPECT_EQ(watch(bounce, 300, {true, false, true}).fault, Fault::kNone);
+  EXPECT_EQ(watch(bounce, 300).fault, Fault::kAxisReversed);
 }
 
 }  // namespace

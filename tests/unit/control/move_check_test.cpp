@@ -33,6 +33,8 @@ TEST(MoveCheck, AJointThatStoodWhileAnotherFollowedIsFrozen) {
   EXPECT_EQ(judged({40, 40, 40}, {40, 2, 40}), fault_of_joint(Fault::kEncoderFrozen, 1)) << "an encoder's noise";
   EXPECT_EQ(judged({40, 40, 40}, {40, 3, 40}), JointFault{}) << "stiff, but alive";
   EXPECT_EQ(judged({40, 24, 40}, {40, 0, 40}), JointFault{}) << "it had no way to go";
+  EXPECT_EQ(judged({40, 40, 40}, {0, 40, 40}), fault_of_joint(Fault::kEncoderFrozen, 0));
+  EXPECT_EQ(judged({40, 40, 40}, {40, 40, 0}), fault_of_joint(Fault::kEncoderFrozen, 2));
   EXPECT_EQ(judged({40, 26, 40}, {40, 0, 40}), fault_of_joint(Fault::kEncoderFrozen, 1));
 }
 

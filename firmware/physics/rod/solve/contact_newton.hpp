@@ -35,7 +35,8 @@ struct Contact;
 /// become a thousand times too large, which makes all other kinds wrong. So a term proportional to the change of each
 /// impulse is added to its equation (a proximal point method [Rockafellar 1976]), which mostly damps such weak
 /// directions. This term vanishes in the solution, where impulses no longer change. With a constant factor some cycles
-/// remain, so the factor is multiplied by the number of steps that have increased the residual.
+/// remain. So the factor is multiplied by the number of times (at least 1) that a step, or the sweep before the first
+/// step, has increased the residual since the last look().
 ///
 /// Z may be some substeps old: after each step the caller computes the velocities with the present A.
 class ContactNewton {
