@@ -17,6 +17,7 @@ inline constexpr long kCheck = 45;           ///< test whether a listed pair, or
 inline constexpr long kMeasure = 340;        ///< closest points of the chords of four pairs
 inline constexpr long kSmooth = 450;         ///< added for four pairs that are near: the smooth curves
 inline constexpr long kPlace = 130;          ///< is a measured pair near, and is there a contact at its place?
+inline constexpr long kBeside = 12;          ///< added to kPlace for each contact with which the place is compared
 inline constexpr long kTake = 210;           ///< making a contact of a measured pair
 inline constexpr long kCorner = 20;          ///< corner of the smooth curve at one node
 inline constexpr long kGuard = 130;          ///< guard check of a measured pair or a contact

@@ -144,5 +144,30 @@ TEST(Places, APairThatCarriesStaysTheOnlyContact) {
   EXPECT_EQ(contacts[0].node[0], 9);
 }
 
+// In a ball a segment touches many others, and each of these contacts is compared with a new pair of this segment.
+TEST(Places, EachComparisonIsCharged) {
+  const auto prepared = [](bool all_carry) {
+    Crossing crossing(0.5, 0.5, -1e-6);
+    for (Candidate& pair : crossing.contacts.pairs) {
+      pair.near_m = 1.0, pair.bulge_m = 0.0;  // all 49 pairs are near
+      if (!all_carry && pair.a == 10 && pair.b == 28) continue;
+      pair.impulse = make(0, 0, 1e-6);
+      pair.touch.begin((pair.a + 0.5) * kStrandDiameter_m, (pair.b + 0.5) * kStrandDiameter_m);
+    }
+    return crossing;
+  };
+  Crossing without = prepared(true), with = prepared(false);
+  (void)without.collect(), (void)with.collect();
+  const long charged = with.work.used() - without.work.used();
+  // 15 contacts of the segments 9 to 11 with 29 to 33 are nearer than the pair (10, 28), and (10, 34) is as near
+  EXPECT_GE(charged, 15 * price::kBeside);
+  EXPECT_LE(charged, 16 * price::kBeside);
+  Crossing poor = prepared(false);
+  poor.work.start(with.work.used() - 1);
+  poor.contacts.begin();
+  ContactReport report;
+  EXPECT_FALSE(poor.contacts.collect_thread(poor.state, poor.motion, 1e-4, 0.3, poor.work, report));
+}
+
 }  // namespace
 }  // namespace ligature::test

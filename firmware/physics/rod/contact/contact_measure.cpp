@@ -174,7 +174,7 @@ bool ContactSet::collect_thread(const State& state, const Motion& motion, double
   const auto straight = [&](const std::int32_t* places) { measure<false>(places, state); };
   if (!by_fours(close_, price::kMeasure + price::kSmooth, smooth) || !by_fours(far_, price::kMeasure, straight))
     return false;
-  if (!find_near(state, dt_s, pieces) || !choose_near(pieces)) return false;
+  if (!find_near(state, dt_s, pieces) || !choose_near(work, pieces)) return false;
   std::size_t next = 0;
   for (const auto index : awake_) {
     PairGroup& group = groups[static_cast<std::size_t>(index)];

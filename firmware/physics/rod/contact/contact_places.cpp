@@ -34,12 +34,13 @@ bool ContactSet::find_near(const State& state, double dt_s, Pieces& pieces) noex
 }
 
 // Is there already a contact at the place of the pair `one`? At one place means: on both strands, the points of the two
-// pairs are less than place_d apart.
-bool ContactSet::has_contact_at(const Near& one, const Candidate& pair) const noexcept {
+// pairs are less than place_d apart. Adds to `compared` the number of contacts that were looked at.
+bool ContactSet::has_contact_at(const Near& one, const Candidate& pair, long& compared) const noexcept {
   const double within_m = tuning.place_d * pair.reach_m;
   for (std::int32_t a = std::max(pair.a - 1, 0); a <= pair.a + 1; ++a) {
     for (std::int32_t k = heads_[static_cast<std::size_t>(a)]; k >= 0; k = near_[static_cast<std::size_t>(k)].next) {
       const Near& other = near_[static_cast<std::size_t>(k)];
+      ++compared;
       if (std::abs(other.a - one.a) < within_m && std::abs(other.b - one.b) < within_m) return true;
     }
   }
@@ -50,9 +51,9 @@ bool ContactSet::has_contact_at(const Near& one, const Candidate& pair) const no
 // have their closest points there. If all four were contacts, Newton's method would solve four equations for one force.
 // So a pair without an impulse is left out if another pair at its place will have a smaller gap at the end of the
 // substep (at the present velocities). A pair with an impulse always stays a contact: where strands hook over each
-// other at a corner, contacts at one place push in different directions, and each is needed. @return false if the time
-// was over first.
-bool ContactSet::choose_near(Pieces& pieces) noexcept {
+// other at a corner, contacts at one place push in different directions, and each is needed. @return false if work or
+// time were used up first.
+bool ContactSet::choose_near(Work& work, Pieces& pieces) noexcept {
   // A heap yields one pair after the other, the nearest first, so that the work can be interrupted; a sort could not.
   const auto is_farther = [](const Near& p, const Near& q) {
     return p.gap_m > q.gap_m || (p.gap_m == q.gap_m && p.due > q.due);
@@ -64,7 +65,11 @@ bool ContactSet::choose_near(Pieces& pieces) noexcept {
     Near& one = near_[left - 1];
     const auto due = static_cast<std::size_t>(one.due);
     const Candidate& pair = pairs[static_cast<std::size_t>(due_[due])];
-    if (!one.loaded && has_contact_at(one, pair)) continue;
+    long compared = 0;
+    const bool has_contact = !one.loaded && has_contact_at(one, pair, compared);
+    if (price::kBeside * compared > work.left() || !pieces.allow(price::kBeside * compared)) return false;
+    work.spend(price::kBeside * compared);
+    if (has_contact) continue;
     measured_[due].touches = true;
     one.next = std::exchange(heads_[static_cast<std::size_t>(pair.a)], static_cast<std::int32_t>(left - 1));
   }

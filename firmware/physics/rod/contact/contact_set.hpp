@@ -258,8 +258,8 @@ class ContactSet : public ContactMemory, public ContactWork {
   void bend(const State& state) noexcept;
   void bend_row(Contact& c, int at, double s, const State& state) const noexcept;
   [[nodiscard]] bool find_near(const State& state, double dt_s, Pieces& pieces) noexcept;
-  [[nodiscard]] bool has_contact_at(const Near& one, const Candidate& pair) const noexcept;
-  [[nodiscard]] bool choose_near(Pieces& pieces) noexcept;
+  [[nodiscard]] bool has_contact_at(const Near& one, const Candidate& pair, long& compared) const noexcept;
+  [[nodiscard]] bool choose_near(Work& work, Pieces& pieces) noexcept;
   /// Makes a measured pair a contact if `measured.touches` says so. @return true if it says so (even if there was no
   /// room for the contact).
   bool take(Candidate& pair, const Measured& measured, const State& state, double mu, ContactReport& report) noexcept;

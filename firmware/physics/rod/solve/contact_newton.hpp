@@ -102,7 +102,7 @@ class ContactNewton {
   /// system is singular or the time was over first (then p and u are unchanged), or if the solution is not finite.
   template <bool Friction>
   bool solve(const Contact* rows, Vec* p, Vec* u, TickTime& time = TickTime::endless()) noexcept;
-  /// The members that an image saves (image.hpp): all but those that are computed again in every Newton step.
+  /// The members that an image saves (image.hpp): all but those that every substep sets again.
   [[nodiscard]] static auto members(ContactNewton& self) noexcept {
     auto& [z, spread, slot, at, rows, slots, coupled, put_off, w, unknowns, count, last2, rises, carrying, dense, on,
            stuck, with, rest] = self;
