@@ -160,7 +160,8 @@ int run_loop(RealTimeSide& side, telemetry::LcmLink& link, telemetry::Telemetry&
   std::fputs(summary(cycle.timing(), cycle.periods(), losses(outlets, recorder)).c_str(), stdout);
   const auto fault = side.fault();
   if (fault == control::Fault::kNone) return 0;
-  return fail({3, "ended in " + telemetry::in_words(static_cast<int>(fault), control::name(fault), side.culprit())});
+  return fail(
+      {3, "ended in " + telemetry::fault_in_words(static_cast<int>(fault), control::name(fault), side.culprit())});
 }
 
 }  // namespace

@@ -6,12 +6,12 @@
 namespace ligature::control {
 namespace {
 
-rt::Culprit hand_alone(std::size_t h) noexcept { return {.hand = static_cast<std::int8_t>(h)}; }
-
-rt::Culprit joint_of(std::size_t h, std::int8_t joint) noexcept { return {static_cast<std::int8_t>(h), joint, 0}; }
+rt::Culprit part_of(std::size_t h, std::int8_t joint = -1, std::uint32_t error = 0) noexcept {
+  return {static_cast<std::int8_t>(h), joint, error};
+}
 
 rt::Culprit drive_of(std::size_t h, const rt::HandReading& reading) noexcept {
-  return {static_cast<std::int8_t>(h), reading.bad_joint, reading.drive_error};
+  return part_of(h, reading.bad_joint, reading.drive_error);
 }
 
 }  // namespace
@@ -131,12 +131,12 @@ bool Controller::any_too_fast() const noexcept {
 Controller::Found Controller::find_fault(const TickInput& in) const noexcept {
   const auto& hands = in.reading.hand;
   for (std::size_t h = 0; h < rt::kHands; ++h) {
-    if (hands[h].bus_lost) return {Fault::kBusLost, hand_alone(h)};
+    if (hands[h].bus_lost) return {Fault::kBusLost, part_of(h)};
   }
   for (std::size_t h = 0; h < rt::kHands; ++h) {
     const Fault foreign = fault_of(hands[h].foreign);
-    if (foreign != Fault::kNone) return {foreign, hand_alone(h)};
-    if (torque_[h].is_astray()) return {Fault::kTorqueAstray, joint_of(h, torque_[h].joint())};
+    if (foreign != Fault::kNone) return {foreign, part_of(h)};
+    if (torque_[h].is_astray()) return {Fault::kTorqueAstray, part_of(h, torque_[h].joint())};
   }
   if (!in.thread_finite) return {Fault::kPhysicsDiverged};
   if (last_tick_ >= 0 && in.tick - last_tick_ - 1 >= settings_.watchdog_ticks) return {Fault::kOverrun};
@@ -144,7 +144,7 @@ Controller::Found Controller::find_fault(const TickInput& in) const noexcept {
   if (state_ == State::kOff) return {};
   for (std::size_t h = 0; h < rt::kHands; ++h) {
     if (const Found found = find_hand_fault(h, hands[h]); found.fault != Fault::kNone) return found;
-    if (loss_[h].is_lossy()) return {Fault::kFramesLost, hand_alone(h)};
+    if (loss_[h].is_lossy()) return {Fault::kFramesLost, part_of(h)};
   }
   return {};
 }
@@ -153,13 +153,13 @@ Controller::Found Controller::find_hand_fault(std::size_t h, const rt::HandReadi
   const HandControl& hand = hands_[h];
   if (age_[h].is_too_old(settings_.watchdog_ticks)) return {Fault::kTpdoTooOld, drive_of(h, reading)};
   if (reading.drive_fault || !reading.enabled) return {Fault::kDriveFault, drive_of(h, reading)};
-  if (reading.buttons_stuck) return {Fault::kButtonsStuck, hand_alone(h)};
+  if (reading.buttons_stuck) return {Fault::kButtonsStuck, part_of(h)};
   const JointFault encoder = hand.encoder_fault();
-  if (encoder.fault != Fault::kNone) return {encoder.fault, joint_of(h, encoder.joint)};
-  if (!hand.is_finite()) return {Fault::kNonFinite, hand_alone(h)};
-  if (hand.overtime_ticks() >= kMostOvertimeTicks) return {Fault::kForceStays, hand_alone(h)};
+  if (encoder.fault != Fault::kNone) return {encoder.fault, part_of(h, encoder.joint)};
+  if (!hand.is_finite()) return {Fault::kNonFinite, part_of(h)};
+  if (hand.overtime_ticks() >= kMostOvertimeTicks) return {Fault::kForceStays, part_of(h)};
   if (hand.speed_m_per_s() > kVelocityFault * settings_.device.velocity_limit_m_per_s)
-    return {hand.is_catching_up() ? Fault::kSamplesBurst : Fault::kVelocityLimit, hand_alone(h)};
+    return {hand.is_catching_up() ? Fault::kSamplesBurst : Fault::kVelocityLimit, part_of(h)};
   return {};
 }
 
@@ -168,10 +168,10 @@ bool Controller::is_up(std::size_t h, const rt::HandReading& reading) const noex
 }
 
 /// What keeps the rig in OFF, or in CALIBRATE: the first hand whose drives are not up, or whose pose is impossible.
-rt::Culprit Controller::find_delay(const rt::RigReading& reading) const noexcept {
+rt::Culprit Controller::find_wait(const rt::RigReading& reading) const noexcept {
   for (std::size_t h = 0; h < rt::kHands && !shutting_down_; ++h) {
     if (state_ == State::kOff && !is_up(h, reading.hand[h])) return drive_of(h, reading.hand[h]);
-    if (state_ == State::kCalibrate && !hands_[h].is_plausible()) return hand_alone(h);
+    if (state_ == State::kCalibrate && !hands_[h].is_plausible()) return part_of(h);
   }
   return {};
 }
@@ -198,7 +198,7 @@ void Controller::step_state(const TickInput& in) noexcept {
   const bool plausible = state_ == State::kCalibrate && std::ranges::all_of(hands_, &HandControl::is_plausible);
   plausible_ticks_ = plausible ? plausible_ticks_ + 1 : 0;
   if (const auto event = find_event(in.reading, brakes)) state_ = next(state_, *event);
-  culprit_ = find_delay(in.reading);
+  culprit_ = find_wait(in.reading);
 }
 
 std::optional<Event> Controller::find_event(const rt::RigReading& reading, bool brakes) const noexcept {

@@ -87,7 +87,7 @@ class Controller {
   [[nodiscard]] Found find_fault(const TickInput& in) const noexcept;
   [[nodiscard]] Found find_hand_fault(std::size_t h, const rt::HandReading& reading) const noexcept;
   [[nodiscard]] bool is_up(std::size_t h, const rt::HandReading& reading) const noexcept;
-  [[nodiscard]] rt::Culprit find_delay(const rt::RigReading& reading) const noexcept;
+  [[nodiscard]] rt::Culprit find_wait(const rt::RigReading& reading) const noexcept;
   void step_state(const TickInput& in) noexcept;
   /// Transition event of this tick, other than a fault.
   [[nodiscard]] std::optional<Event> find_event(const rt::RigReading& reading, bool brakes) const noexcept;

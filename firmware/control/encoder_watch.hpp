@@ -53,23 +53,24 @@ class EncoderWatch {
     for (std::size_t j = 0; j < kJoints; ++j) x_[j][newest_] = counts[j];
     count_ = std::min(count_ + 1, kLength);
     if (count_ >= 2 * kWindow && is_frozen(free)) return fault_of_joint(Fault::kEncoderFrozen, suspect_);
-    std::size_t joint = 0;
-    return reversal(free, &joint) >= 1.0 ? fault_of_joint(Fault::kAxisReversed, joint) : JointFault{};
+    const Reversal found = reversal(free);
+    return found.strength >= 1.0 ? fault_of_joint(Fault::kAxisReversed, found.joint) : JointFault{};
   }
 
   /// How strongly the newest samples look like an encoder that has begun to count backwards; from 1 on, this counts as
-  /// a fault. The value is the speed at the suspected turn (MirroredTurn::speed()) divided by the least speed at which
-  /// the test is reliable; the largest over all joints and window lengths. @param joint  set to the joint with this
-  /// value, if it is above 0
-  double reversal(const std::array<bool, kJoints>& free, std::size_t* joint = nullptr) const noexcept {
-    double most = 0.0;
+  /// a fault. `strength` is the speed at the suspected turn (MirroredTurn::speed()) divided by the least speed at which
+  /// the test is reliable; the largest over all joints and window lengths, found at `joint`.
+  struct Reversal {
+    double strength = 0.0;
+    std::size_t joint = 0;
+  };
+  [[nodiscard]] Reversal reversal(const std::array<bool, kJoints>& free) const noexcept {
+    Reversal most;
     for (std::size_t j = 0; j < kJoints; ++j) {
       for (const MirroredTurn::Look& look : MirroredTurn::kLooks) {
         if (!free[j] || count_ < 2 * look.half) continue;
         const double share = MirroredTurn::speed([&](std::size_t ago) { return at(j, ago); }, look) / look.moving;
-        if (share <= most || !(look.alone || other_moves_on(j))) continue;
-        most = share;
-        if (joint != nullptr) *joint = j;
+        if (share > most.strength && (look.alone || other_moves_on(j))) most = {share, j};
       }
     }
     return most;

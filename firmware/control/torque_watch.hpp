@@ -33,8 +33,8 @@ class TorqueWatch {
   /// (SampleAge)
   void look(const rt::HandReading& reading, bool fresh) noexcept {
     if (!fresh) return;
-    joint_ = -1;
-    strange_ = is_strange(reading) ? std::min(strange_ + 1, kStrange) : 0;
+    joint_ = strange_joint(reading);
+    strange_ = joint_ >= 0 ? std::min(strange_ + 1, kStrange) : 0;
   }
   void sent(const std::array<double, rt::kJoints>& torque_Nm) noexcept {
     if (++ticks_ >= block_ticks_) {
@@ -49,7 +49,7 @@ class TorqueWatch {
     }
   }
   [[nodiscard]] bool is_astray() const noexcept { return strange_ >= kStrange; }
-  /// First joint whose torque was outside in the last sample; -1: none, or only a statusword bit told it.
+  /// First joint whose torque was outside in the last sample; -1: none.
   [[nodiscard]] std::int8_t joint() const noexcept { return joint_; }
 
  private:
@@ -58,21 +58,20 @@ class TorqueWatch {
     double low_Nm = 0.0, high_Nm = 0.0;
   };
 
-  [[nodiscard]] bool is_strange(const rt::HandReading& reading) noexcept {
-    bool strange = reading.torque_astray;
+  /// First joint whose drive reports a deviation, or a torque outside the extremes; -1: none.
+  [[nodiscard]] std::int8_t strange_joint(const rt::HandReading& reading) const noexcept {
     for (std::size_t j = 0; j < rt::kJoints; ++j) {
       const double told_Nm = std::isfinite(reading.measured_Nm[j]) ? reading.measured_Nm[j] : reading.torque_Nm[j];
-      if (!std::isfinite(told_Nm)) continue;  // this joint's message has no torque
       Range may;
       for (const auto& block : blocks_) {
         may.low_Nm = std::min(may.low_Nm, block[j].low_Nm);
         may.high_Nm = std::max(may.high_Nm, block[j].high_Nm);
       }
-      if (told_Nm >= may.low_Nm - tolerance_Nm_ && told_Nm <= may.high_Nm + tolerance_Nm_) continue;
-      strange = true;
-      if (joint_ < 0) joint_ = static_cast<std::int8_t>(j);
+      // A joint whose message has no torque is not a number here, and is within the extremes
+      const bool outside = told_Nm < may.low_Nm - tolerance_Nm_ || told_Nm > may.high_Nm + tolerance_Nm_;
+      if (outside || reading.torque_astray[j]) return static_cast<std::int8_t>(j);
     }
-    return strange;
+    return -1;
   }
 
   double tolerance_Nm_;

@@ -157,8 +157,7 @@ rt::HandReading HandLink::reading() const noexcept {
     r.tell_drive(j, {is_on, is_missing, has_failed, node.emergency});
     // Only drives with Ligature's own profile (docs/wire.md) use this statusword bit for a wrong torque. Other drives
     // report the torque of every joint instead.
-    r.torque_astray =
-        r.torque_astray || (!buttons_.are_inputs() && (node.latest.statusword & can::cia402::kTorqueAstrayBit) != 0);
+    r.torque_astray[j] = !buttons_.are_inputs() && (node.latest.statusword & can::cia402::kTorqueAstrayBit) != 0;
     r.torque_limited[j] = (node.latest.statusword & can::cia402::kInternalLimitBit) != 0;
     if (has_word(j))
       r.torque_held[j] = can::profile::held_of(node.latest.buttons);

@@ -139,8 +139,7 @@ rt::HandReading MoteusLink::reading() const noexcept {
     if (r.valid && !moteus::is(used_[j].mode, Mode::kTimeout))
       r.measured_Nm[j] = static_cast<double>(used_[j].torque_Nm);
     // Without its torque nobody would see one of its own
-    r.torque_astray = r.torque_astray ||
-                      (r.valid && moteus::is(used_[j].mode, Mode::kPosition) && !std::isfinite(used_[j].torque_Nm));
+    r.torque_astray[j] = r.valid && moteus::is(used_[j].mode, Mode::kPosition) && !std::isfinite(used_[j].torque_Nm);
     r.torque_limited[j] = moteus::is_limit(used_[j].fault);
     const bool has_failed = node.has_failed || node.is_lost || node.tells_unasked;
     r.tell_drive(j, {node.is_on(), answers_.is_missing(j), has_failed, node.error()});

@@ -25,7 +25,7 @@ enum class Foreign : std::uint8_t {
 struct DriveStatus {
   bool is_on = true;        ///< enabled
   bool is_silent = false;   ///< its part of this period's samples has not come
-  bool has_failed = false;  ///< it is in Fault, sent an emergency or fell out of NMT operational
+  bool has_failed = false;  ///< it reports a fault, left operation by itself, or was away; see the link of its protocol
   std::uint32_t error = 0;  ///< error code that it sent; 0: none
 };
 
@@ -38,6 +38,7 @@ struct HandReading {
   /// Torque that the drive measures, with noise. It only shows whether a torque is one that nobody commanded.
   std::array<double, kJoints> measured_Nm{kNotTold, kNotTold, kNotTold};
   std::array<bool, kJoints> torque_limited{};  ///< the drive makes less torque than commanded
+  std::array<bool, kJoints> torque_astray{};  ///< the drive reports a torque that is neither the commanded one nor less
   /// Number of SYNCs (counted by the drive) for which the drive has repeated an older torque because RPDOs were lost;
   /// 0: none, or the drive does not report it.
   std::array<int, kJoints> torque_held{};
@@ -48,7 +49,6 @@ struct HandReading {
   bool enabled = false;              ///< every drive is in Operation enabled
   bool drive_fault = false;          ///< a drive is in Fault, sent an emergency or fell out of NMT operational
   bool buttons_stuck = false;        ///< the button module's counter stands still
-  bool torque_astray = false;        ///< a drive reports that its torque is neither the commanded one nor less
   bool bus_lost = false;             ///< the bus is not usable: interface down, bus-off, or peer gone
   Foreign foreign = Foreign::kNone;  ///< kind of the first frame from another controller in this run
   /// Share of the previous period in which this hand's bus was busy, stuff bits included
@@ -59,14 +59,15 @@ struct HandReading {
   std::uint32_t drive_error = 0;  ///< error code that this drive sent; 0: none
   static constexpr std::size_t kButtonModule = kJoints;
 
-  /// Enters a drive into enabled, drive_fault and bad_joint. Failed is worse than silent, and silent worse than off; of
-  /// drives in equal trouble the first with an error code is named, or the first.
+  /// Enters a drive into `enabled` (set it to true before the first call), drive_fault and bad_joint. Failed is worse
+  /// than silent, and silent worse than off; of drives in equal trouble the first with an error code is named, or the
+  /// first.
   void tell_drive(std::size_t joint, const DriveStatus& drive) noexcept {
     enabled = enabled && drive.is_on;
     drive_fault = drive_fault || drive.has_failed;
     const int trouble = drive.has_failed ? 3 : drive.is_silent ? 2 : drive.is_on ? 0 : 1;
-    if (trouble < worst_ || (trouble == worst_ && (drive.error == 0 || drive_error != 0))) return;
-    if (trouble == 0) return;
+    const bool is_as_bad_as_named = trouble == worst_ && (drive.error == 0 || drive_error != 0);
+    if (trouble == 0 || trouble < worst_ || is_as_bad_as_named) return;
     bad_joint = static_cast<std::int8_t>(joint), worst_ = trouble, drive_error = drive.error;
   }
 

@@ -40,7 +40,7 @@ std::vector<ligature_msg::event_t> EventFinder::next(const rt::TickRecord& r) {
   if ((r.flags & rt::kPeriodLost) != 0) return events;
   if (r.fault != last_.fault && r.fault != 0) {
     events.push_back(event(r.tick, event_t::KIND_FAULT, r.culprit.hand, r.fault,
-                           in_words(r.fault, names_.fault(r.fault), r.culprit)));
+                           fault_in_words(r.fault, names_.fault(r.fault), r.culprit)));
   }
   if (r.state != last_.state) {
     events.push_back(event(r.tick, event_t::KIND_STATE, -1, r.state,

@@ -25,7 +25,7 @@ namespace ligature::telemetry {
 }
 
 /// Such as "fault 12: drive fault, left hand". @param name of the fault
-[[nodiscard]] inline std::string in_words(int fault, const char* name, const rt::Culprit& c) {
+[[nodiscard]] inline std::string fault_in_words(int fault, const char* name, const rt::Culprit& c) {
   const std::string where = in_words(c);
   return "fault " + std::to_string(fault) + ": " + name + (where.empty() ? "" : ", " + where);
 }

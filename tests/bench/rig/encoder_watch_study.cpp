@@ -42,7 +42,7 @@ Honest honest(HonestHand::Kind kind, double hours, std::uint64_t seed) {
     for (int t = 0; t < kRunTicks; ++t) {
       const auto fault = watch.add(hand.next(), 1, kFree).fault;
       frozen = frozen || fault == control::Fault::kEncoderFrozen;
-      most = std::max(most, watch.reversal(kFree));
+      most = std::max(most, watch.reversal(kFree).strength);
     }
     count(most, h.reversed);
     h.frozen += frozen;
@@ -74,8 +74,8 @@ Reversed reversed(HonestHand::Kind kind, int draws, std::uint64_t seed) {
       if (t > onset) counts[joint] = 2.0 * x0 - counts[joint];
       (void)watch.add(counts, 1, kFree);
       if (t <= onset) continue;
-      if (most < 1.0 && watch.reversal(kFree) >= 1.0) r.ticks.push_back(t - onset);
-      most = std::max(most, watch.reversal(kFree));
+      if (most < 1.0 && watch.reversal(kFree).strength >= 1.0) r.ticks.push_back(t - onset);
+      most = std::max(most, watch.reversal(kFree).strength);
     }
     const auto at = static_cast<std::size_t>(onset);
     const double speed = std::abs(told[at + 6] - told[at - 6]) / 12.0;

@@ -93,7 +93,7 @@ TEST(EncoderWatch, HandsThatTurnStopAndTrembleAreNotSuspected) {
       bool is_suspected = false;
       for (int t = 0; t < 5000 && !is_suspected; ++t) {
         is_suspected = w.add(hand.next(), 1, kFree).fault != Fault::kNone;
-        most = std::max(most, w.reversal(kFree));
+        most = std::max(most, w.reversal(kFree).strength);
       }
       alarms += is_suspected ? 1 : 0;
     }

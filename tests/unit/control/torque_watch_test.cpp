@@ -190,11 +190,12 @@ TEST(TorqueWatch, AJointThatTellsNoTorqueTellsByABit) {
   rt::HandReading r = reading_of({0.0, 0.0, rt::HandReading::kNotTold});
   for (int i = 0; i < 5; ++i) watch.look(r), watch.sent({0.0, 0.0, 0.3});
   EXPECT_FALSE(watch.is_astray());
-  r.torque_astray = true;
+  r.torque_astray[2] = true;
   watch.look(r);
   EXPECT_FALSE(watch.is_astray());
   watch.look(r);
   EXPECT_TRUE(watch.is_astray());
+  EXPECT_EQ(watch.watch.joint(), 2);
 }
 
 }  // namespace

@@ -126,7 +126,7 @@ TEST_F(Profile, ASetIsCompleteOnlyWithItsButtons) {
 TEST_F(Profile, EveryJointTellsItsTorqueAndAMakersBitMeansNothing) {
   const auto r = period(0, 0x27 | can::cia402::kTorqueAstrayBit);
   for (const double torque : r.torque_Nm) EXPECT_NEAR(torque, 7 * 0.3e-3, 1e-12);
-  EXPECT_FALSE(r.torque_astray);
+  EXPECT_EQ(r.torque_astray, (std::array<bool, 3>{}));
   EXPECT_FALSE(period(0).buttons_stuck);
   for (int i = 0; i < 100; ++i) EXPECT_FALSE(period(2).buttons_stuck) << "there is no sign of life to miss";
 }

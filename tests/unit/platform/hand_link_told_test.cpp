@@ -84,7 +84,8 @@ TEST_F(HandLinkTest, WhatDrivesSendIsNotForeign) {
 }
 
 TEST_F(HandLinkTest, ADriveThatSaysItsTorqueIsAstrayIsHeard) {
-  EXPECT_FALSE(period().torque_astray);
+  constexpr std::array<bool, 3> kNoJoint{};
+  EXPECT_EQ(period().torque_astray, kNoJoint);
   for (std::size_t astray = 0; astray < 3; ++astray) {
     link.send_sync();
     for (std::size_t j = 0; j < 3; ++j) {
@@ -93,9 +94,9 @@ TEST_F(HandLinkTest, ADriveThatSaysItsTorqueIsAstrayIsHeard) {
       bus.inbox.push_back(can::encode(kNodes[j], can::Tpdo1{word, 100, 0, 0}));
     }
     link.drain();
-    EXPECT_TRUE(link.reading().torque_astray) << astray;
+    for (std::size_t j = 0; j < 3; ++j) EXPECT_EQ(link.reading().torque_astray[j], j == astray) << astray;
   }
-  EXPECT_FALSE(period().torque_astray);
+  EXPECT_EQ(period().torque_astray, kNoJoint);
 }
 
 TEST_F(HandLinkTest, ADriveThatMakesLessThanItWasAskedForIsHeard) {

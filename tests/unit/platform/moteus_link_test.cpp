@@ -181,12 +181,13 @@ TEST_F(Moteus, ADriveThatForgotItsPositionStaysOffUntilARestart) {
 
 /// Without its torque a drive's own torque would not be seen.
 TEST_F(Moteus, ATorqueThatIsNoNumberIsAstray) {
+  constexpr std::array<bool, 3> kNoJoint{};
   switch_on();
-  EXPECT_FALSE(period(DriveRequest::kOperate).torque_astray);
+  EXPECT_EQ(period(DriveRequest::kOperate).torque_astray, kNoJoint);
   made_Nm = std::nanf("");
-  EXPECT_TRUE(period(DriveRequest::kOperate).torque_astray);
+  EXPECT_EQ(period(DriveRequest::kOperate).torque_astray, (std::array{true, true, true}));
   set_modes(kOff);
-  EXPECT_FALSE(period(DriveRequest::kHold).torque_astray) << "a drive that is off makes none";
+  EXPECT_EQ(period(DriveRequest::kHold).torque_astray, kNoJoint) << "a drive that is off makes none";
 }
 
 /// A drive whose encoder has failed still says its mode.
