@@ -108,15 +108,16 @@ TEST(Labour, IsSharedFairly) {
 
 // Newton's method converges in threads of any number of nodes (36 to 235 are drawn). The overhand is pulled at speeds
 // at which no tick needs much work. With a proximal term that does not grow (contact_newton.hpp), the method cycles in
-// one tick of every tenth pull, until the tick's work is used up and time is lost.
+// one tick of every tenth pull, until the tick's work is used up. Lost time is not asserted: with segments of 15 to 18
+// diameters (66 and 55 nodes) a tight loop can snap, and then the guard shortens a substep (2 of 420 pulls).
 TEST(Labour, IsNeverUsedUpByCycles) {
   Random random(607);
   long most = 0;
   for (int k = 0; k < 60; ++k) {
     const int nodes = 36 + static_cast<int>(random() % 200);
-    double lost = 0.0;
+    int cut_short = 0;
     const auto look = [&](const RodSimulation& sim) {
-      lost += sim.rod().report().time_lost;
+      cut_short += sim.rod().report().cut_short;
       most = std::max(most, sim.rod().report().work);
     };
     Tightening pull = pulled("suture-3-0-knot.toml", 0.03 + 0.12 * random.share(),
@@ -125,7 +126,7 @@ TEST(Labour, IsNeverUsedUpByCycles) {
       pull.tick(0.0);
       look(pull.sim());
     }
-    EXPECT_EQ(lost, 0.0) << nodes;
+    EXPECT_EQ(cut_short, 0) << nodes;
   }
   RecordProperty("most", std::to_string(most));
   EXPECT_LT(most, 4'000'000);
