@@ -179,6 +179,7 @@ bool Rod::settle(double dt_s) noexcept {
 // that the caller can return it.
 bool Rod::put_off() noexcept {
   state_.v = v_before_;
+  braked_ = false;
   patience_.put_off();
   ++report_.cut_short;
   return false;
@@ -230,10 +231,13 @@ double Rod::brake(double dt_s) noexcept {
   return share;
 }
 
-// The guard. Also updates motion_ with the new velocities, and applies the brake. @return the share of dt_s for which
+// Applies the brake, updates motion_ with the new velocities, and applies the guard. @return the share of dt_s for which
 // everything can move without strands passing through each other; nothing if the substep must wait.
 template <unsigned Bits>
 std::optional<double> Rod::guard(double dt_s) noexcept {
+  // Sweeps that replace an unfinished Newton solution converge slowly: their error is about 100 times the last change
+  const bool far_off = seen_.change_m_per_s > loose_m_per_s() || (alone_ && patience_.sweeps_only());
+  const double slow = seen_.cut_short && far_off ? brake(dt_s) : 1.0;
   motion_.measure(state_.v.data());
   double share = contacts_.safe_fraction(motion_, state_, dt_s);
   if constexpr ((Bits & kContact) != 0) {
@@ -242,12 +246,8 @@ std::optional<double> Rod::guard(double dt_s) noexcept {
     share = std::min(share, *unseen);
   }
   report_.guard_events += share < 1.0;
-  // Sweeps that replace an unfinished Newton solution converge slowly: their error is about 100 times the last change
-  const bool far_off = seen_.change_m_per_s > loose_m_per_s() || (alone_ && patience_.sweeps_only());
-  const bool wild = seen_.cut_short && far_off;
-  const double slow = wild ? brake(dt_s) : 1.0;  // braked velocities move less, so the guard shortens the step less
-  report_.time_lost += (1.0 - std::min(share, slow)) / report_.substeps;
-  return std::min(1.0, share / std::max(slow, 1e-9));
+  report_.time_lost += (1.0 - share * slow) / report_.substeps;
+  return share;
 }
 
 template <unsigned Bits>
