@@ -179,7 +179,6 @@ bool Rod::settle(double dt_s) noexcept {
 // that the caller can return it.
 bool Rod::put_off() noexcept {
   state_.v = v_before_;
-  braked_ = false;
   patience_.put_off();
   ++report_.cut_short;
   return false;
@@ -227,24 +226,27 @@ double Rod::brake(double dt_s) noexcept {
     feel_hands(dt_s);
     braked_ = true;
     for (auto& v : state_.v) v = share * v;
+    motion_.measure(state_.v.data());
   }
   return share;
 }
 
-// Applies the brake, updates motion_ with the new velocities, and applies the guard. @return the share of dt_s for which
-// everything can move without strands passing through each other; nothing if the substep must wait.
+// Updates motion_ with the new velocities, and applies the brake and the guard. A substep that must wait is not braked.
+// @return the share of dt_s for which everything can move without strands passing through each other; nothing if the
+// substep must wait.
 template <unsigned Bits>
 std::optional<double> Rod::guard(double dt_s) noexcept {
-  // Sweeps that replace an unfinished Newton solution converge slowly: their error is about 100 times the last change
-  const bool far_off = seen_.change_m_per_s > loose_m_per_s() || (alone_ && patience_.sweeps_only());
-  const double slow = seen_.cut_short && far_off ? brake(dt_s) : 1.0;
   motion_.measure(state_.v.data());
-  double share = contacts_.safe_fraction(motion_, state_, dt_s);
+  double share = 1.0;
   if constexpr ((Bits & kContact) != 0) {
     const auto unseen = guard_unseen(dt_s);
     if (!unseen) return std::nullopt;
-    share = std::min(share, *unseen);
+    share = *unseen;
   }
+  // Sweeps that replace an unfinished Newton solution converge slowly: their error is about 100 times the last change
+  const bool far_off = seen_.change_m_per_s > loose_m_per_s() || (alone_ && patience_.sweeps_only());
+  const double slow = seen_.cut_short && far_off ? brake(dt_s) : 1.0;
+  share = std::min(share, contacts_.safe_fraction(motion_, state_, dt_s));
   report_.guard_events += share < 1.0;
   report_.time_lost += (1.0 - share * slow) / report_.substeps;
   return share;
