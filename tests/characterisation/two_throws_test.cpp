@@ -109,7 +109,7 @@ TEST(Labour, IsSharedFairly) {
 // Newton's method converges in threads of any number of nodes (36 to 235 are drawn). The overhand is pulled at speeds
 // at which no tick needs much work. With a proximal term that does not grow (contact_newton.hpp), the method cycles in
 // one tick of every tenth pull, until the tick's work is used up. Lost time is not asserted: with segments of 15 to 18
-// diameters (66 and 55 nodes) a tight loop can snap, and then the guard shortens a substep (2 of 420 pulls).
+// diameters (66 and 55 nodes) a tight loop can snap, and then the guard shortens a substep (2 of 960 pulls).
 TEST(Labour, IsNeverUsedUpByCycles) {
   Random random(607);
   long most = 0;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Time of ticks that use their whole budget: threads crumpled into balls beside pulls of two knots.
+"""Time of ticks that use more than 60 % of their budget: threads crumpled into balls beside pulls of two knots.
 
 usage: PYTHONPATH=build/dev/python-package build/venv/bin/python tests/bench/python/price_over_time.py [--budget N] [--repeat N]
   --budget N    instructions of a tick (default: that of the scene)
@@ -64,7 +64,7 @@ def told(name, times, work):
     if not len(full):
         print(f"{name:26} no tick uses {LEAST:.0%} of the budget", flush=True)
         return 0.0
-    print(f"{name:26} {len(full):4} ticks use their budget: median {np.median(full):5.0f} us, longest {full.max():5.0f} us", flush=True)
+    print(f"{name:26} {len(full):4} such ticks: median {np.median(full):5.0f} us, longest {full.max():5.0f} us", flush=True)
     return full.max()
 
 
