@@ -178,11 +178,16 @@ TEST(Growth, AListThatCannotBeAffordedKeepsTheImpulses) {
   broad.reserve(state.nodes(), 1'000'000);
   const PairList list{made.pairs, made.groups};
   Work work;
-  for (const long allowance : {BroadPhase::least_cost(state.nodes()), made.spent / 2, 2 * made.spent}) {
+  const auto build = [&](long allowance) {
     work.start(2'000'000'000);
     broad.keep_impulses(made.pairs);
-    if (!broad.build(state, made.motion, outlook, allowance, work, list)) broad.put_back(list);
-  }
+    const bool built = broad.build(state, made.motion, outlook, allowance, work, list);
+    if (!built) broad.put_back(list);
+    return built;
+  };
+  for (int k = 0; k < 40; ++k)
+    EXPECT_FALSE(build(std::max(BroadPhase::least_cost(state.nodes()), k * made.spent / 40)));
+  EXPECT_TRUE(build(2 * made.spent));
   ASSERT_EQ(made.pairs.size(), whole);
   for (const auto& pair : made.pairs) {
     EXPECT_EQ(pair.impulse[0], 1.0 + pair.a) << pair.a << ' ' << pair.b;

@@ -5,36 +5,11 @@
 
 #include "firmware/physics/closest.hpp"
 #include "firmware/physics/rod/contact/contact_set.hpp"
-#include "firmware/physics/rod/contact/smooth.hpp"
+#include "firmware/physics/rod/contact/four_segments.hpp"
 #include "firmware/physics/rod/tuning.hpp"
 
 namespace ligature::physics::rod {
 namespace {
-
-template <class F>
-[[nodiscard]] Lanes each(F number_of) noexcept {
-  return Lanes{number_of(0), number_of(1), number_of(2), number_of(3)};
-}
-
-/// Four segments, with their nodes stored by component.
-struct FourSegments {
-  std::array<std::size_t, 4> j;
-  Vecs x, e;
-
-  FourSegments(const std::array<std::size_t, 4>& segments, const Vec* nodes) noexcept : j(segments) {
-    x = four(nodes[j[0]], nodes[j[1]], nodes[j[2]], nodes[j[3]]);
-    e = four(nodes[j[0] + 1], nodes[j[1] + 1], nodes[j[2] + 1], nodes[j[3] + 1]) - x;
-  }
-  [[nodiscard]] SmoothOf<Vecs, Lanes> smooth(const State& state, const Vec* corner) const noexcept {
-    const Lanes one = Lanes{} + 1.0;
-    return {x,
-            e,
-            four(corner[j[0]], corner[j[1]], corner[j[2]], corner[j[3]]),
-            four(corner[j[0] + 1], corner[j[1] + 1], corner[j[2] + 1], corner[j[3] + 1]),
-            one / each([&](std::size_t l) { return state.cut_before[j[l]]; }),
-            one / each([&](std::size_t l) { return state.cut_after[j[l]]; })};
-  }
-};
 
 /// Replaces the closest points s, t by the points at which the pair's impulse acts (touch.hpp).
 void press(Candidate& pair, const Mesh& mesh, double& s, double& t) noexcept {

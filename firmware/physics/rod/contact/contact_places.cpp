@@ -29,16 +29,22 @@ bool ContactSet::find_near(const State& state, double dt_s, Pieces& pieces) noex
                      gap + ahead_m - (loaded ? tuning.place_stays_d * pair.reach_m : 0.0), mesh.s[a] + s * mesh.rest[a],
                      mesh.s[b] + t * mesh.rest[b], loaded});
   }
-  heads_.assign(state.x.size() + 1, -1);
+  std::fill(heads_.begin(), heads_.end(), -1);
+  bins_per_m_ = static_cast<double>(heads_.size()) / mesh.s.back();
   return true;
+}
+
+std::size_t ContactSet::bin(double at_m) const noexcept {
+  const double last = static_cast<double>(heads_.size() - 1);
+  return static_cast<std::size_t>(std::min(std::max(0.0, at_m * bins_per_m_), last));  // 0 if at_m is NaN
 }
 
 // Is there already a contact at the place of the pair `one`? At one place means: on both strands, the points of the two
 // pairs are less than place_d apart. Adds to `compared` the number of contacts that were looked at.
-bool ContactSet::has_contact_at(const Near& one, const Candidate& pair, long& compared) const noexcept {
-  const double within_m = tuning.place_d * pair.reach_m;
-  for (std::int32_t a = std::max(pair.a - 1, 0); a <= pair.a + 1; ++a) {
-    for (std::int32_t k = heads_[static_cast<std::size_t>(a)]; k >= 0; k = near_[static_cast<std::size_t>(k)].next) {
+bool ContactSet::has_contact_at(const Near& one, double reach_m, long& compared) const noexcept {
+  const double within_m = tuning.place_d * reach_m;
+  for (std::size_t at = bin(one.a - within_m), last = bin(one.a + within_m); at <= last; ++at) {
+    for (std::int32_t k = heads_[at]; k >= 0; k = near_[static_cast<std::size_t>(k)].next) {
       const Near& other = near_[static_cast<std::size_t>(k)];
       ++compared;
       if (std::abs(other.a - one.a) < within_m && std::abs(other.b - one.b) < within_m) return true;
@@ -64,14 +70,14 @@ bool ContactSet::choose_near(Work& work, Pieces& pieces) noexcept {
     std::pop_heap(near_.begin(), near_.begin() + static_cast<std::ptrdiff_t>(left), is_farther);
     Near& one = near_[left - 1];
     const auto due = static_cast<std::size_t>(one.due);
-    const Candidate& pair = pairs[static_cast<std::size_t>(due_[due])];
+    const double reach_m = pairs[static_cast<std::size_t>(due_[due])].reach_m;
     long compared = 0;
-    const bool has_contact = !one.loaded && has_contact_at(one, pair, compared);
+    const bool has_contact = !one.loaded && has_contact_at(one, reach_m, compared);
     if (price::kBeside * compared > work.left() || !pieces.allow(price::kBeside * compared)) return false;
     work.spend(price::kBeside * compared);
     if (has_contact) continue;
     measured_[due].touches = true;
-    one.next = std::exchange(heads_[static_cast<std::size_t>(pair.a)], static_cast<std::int32_t>(left - 1));
+    one.next = std::exchange(heads_[bin(one.a)], static_cast<std::int32_t>(left - 1));
   }
   return true;
 }

@@ -17,7 +17,7 @@ void ContactSet::reserve(int nodes, int bodies, int window) {
   for (auto* array : {&close_, &far_}) array->reserve(pairs.capacity() + 4);
   measured_.resize(pairs.capacity());
   near_.reserve(pairs.capacity());
-  heads_.reserve(n + 1);
+  heads_.assign(8 * n, -1);
   corner_.assign(n, Vec{});
   share_.assign(n, 0.0);
   groups.reserve(pairs.capacity());
@@ -26,7 +26,7 @@ void ContactSet::reserve(int nodes, int bodies, int window) {
   floor_stuck.assign(floor_impulse.size(), 0);
   body_stuck.assign(body_impulse.size(), 0);
   body_due_.assign(static_cast<std::size_t>(bodies), -1.0);
-  columns_.assign(rows * (static_cast<std::size_t>(window) + 8), 0.0F);
+  columns_.resize(rows * (static_cast<std::size_t>(window) + 8));
   swept_.reserve(window);
   for (auto* array : {&extra_, &step_}) array->assign(n, Vec{});
   for (auto* array : {&p_, &plain_, &residual_}) array->assign(rows, Vec{});

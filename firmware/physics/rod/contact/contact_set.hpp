@@ -58,9 +58,9 @@ class ContactWork {
   };
   /// The members that an image saves (image.hpp): all but those that each substep computes again.
   [[nodiscard]] static auto members(ContactWork& self) noexcept {
-    auto& [watched, awake, due, close, far, measured, near, heads, corner, share, bent, gaps, columns, swept, extra,
-           step, loaded, p, plain, residual, mixing, newton, u, v_start, p_start, turning, spin, segments, radius_m,
-           body_due, stride, first, last, overflow] = self;
+    auto& [watched, awake, due, close, far, measured, near, heads, bins, corner, share, bent, gaps, columns, swept,
+           extra, step, loaded, p, plain, residual, mixing, newton, u, v_start, p_start, turning, spin, segments,
+           radius_m, body_due, stride, first, last, overflow] = self;
     return std::tie(newton, body_due, first, last, overflow);
   }
 
@@ -74,7 +74,7 @@ class ContactWork {
   };
   /// A measured pair that is near enough to be a contact.
   struct Near {
-    std::int32_t due, next;  ///< its index in due_; the next one in the list of a segment (heads_), or -1
+    std::int32_t due, next;  ///< its index in due_; the next one in the list of a bin (heads_), or -1
     double gap_m, a, b;      ///< gap by which it is ordered; material coordinates of its points, m
     bool loaded;             ///< carried an impulse in the last substep
   };
@@ -90,12 +90,13 @@ class ContactWork {
   std::vector<std::int32_t> close_, far_;  // indices into due_: measured between smooth curves; between chords only
   std::vector<Measured> measured_;         // in the order of due_
   std::vector<Near> near_;                 // pairs that are near enough to be contacts
-  std::vector<std::int32_t> heads_;        // per segment a: first contact among its pairs in near_, or -1
-  std::vector<Vec> corner_;                // corner vectors k_i of the smooth curve (smooth.hpp) at nodes
-  std::vector<double> share_;              // per node: factor <= 1 by which k_i is reduced to limit the corner's cut
-  Span bent_{0, -1};                       // nodes from the first to the last of the pairs in close_
-  std::vector<double> gaps_;               // scratch of choose_rows()
-  std::vector<float> columns_;             // per row: C^-1 J^T, velocity of each window node per impulse; padded
+  std::vector<std::int32_t> heads_;  // per bin of the thread: first contact in near_ with its point a in it, or -1
+  double bins_per_m_ = 0.0;          // all bins together are as long as the thread
+  std::vector<Vec> corner_;          // corner vectors k_i of the smooth curve (smooth.hpp) at nodes
+  std::vector<double> share_;        // per node: factor <= 1 by which k_i is reduced to limit the corner's cut
+  Span bent_{0, -1};                 // nodes from the first to the last of the pairs in close_
+  std::vector<double> gaps_;         // scratch of choose_rows()
+  Floats columns_;                   // per row: C^-1 J^T, velocity of each window node per impulse; padded
   SweptVelocities swept_;
   std::vector<Vec> extra_, step_;
   std::vector<std::int32_t> loaded_;  // rows that have carried an impulse in this substep; only these are mixed
@@ -258,7 +259,9 @@ class ContactSet : public ContactMemory, public ContactWork {
   void bend(const State& state) noexcept;
   void bend_row(Contact& c, int at, double s, const State& state) const noexcept;
   [[nodiscard]] bool find_near(const State& state, double dt_s, Pieces& pieces) noexcept;
-  [[nodiscard]] bool has_contact_at(const Near& one, const Candidate& pair, long& compared) const noexcept;
+  /// Bin of a material coordinate, m, in heads_.
+  [[nodiscard]] std::size_t bin(double at_m) const noexcept;
+  [[nodiscard]] bool has_contact_at(const Near& one, double reach_m, long& compared) const noexcept;
   [[nodiscard]] bool choose_near(Work& work, Pieces& pieces) noexcept;
   /// Makes a measured pair a contact if `measured.touches` says so. @return true if it says so (even if there was no
   /// room for the contact).

@@ -5,7 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "firmware/physics/rod/contact/smooth.hpp"
+#include "firmware/physics/closest.hpp"
+#include "firmware/physics/rod/contact/four_segments.hpp"
 #include "firmware/physics/rod/tuning.hpp"
 
 namespace ligature::physics::rod {
@@ -126,11 +127,11 @@ void BroadPhase::give_back(Candidate& pair) const noexcept {
   pair.stuck = k.stuck;
 }
 
-bool BroadPhase::consider(const State& state, const Motion& motion, const Outlook& outlook, std::size_t a,
-                          std::size_t b, std::vector<Candidate>& list) noexcept {
+void BroadPhase::consider(const State& state, const Motion& motion, const Outlook& outlook, std::size_t a,
+                          std::size_t b) noexcept {
   spent_ += price::kConsider;
   const double d = outlook.diameter_m, arc = state.mesh.s[b] - state.mesh.s[a + 1];
-  if (arc < kLeastArc * d) return true;
+  if (arc < kLeastArc * d) return;
   const bool along = arc < 0.5 * std::numbers::pi * d;  // neighbours along the thread
   const double reach = along ? d * std::sin(arc / d) : d;
   const auto cut = [&](std::size_t j) { return std::min(static_cast<double>(bulge_[j]), tuning.most_cut_d * d); };
@@ -139,25 +140,35 @@ bool BroadPhase::consider(const State& state, const Motion& motion, const Outloo
   const float dx = x_[b] - x_[a], dy = y_[b] - y_[a], dz = z_[b] - z_[a];
   const float halves = half_[a] + half_[b], within = (halves + static_cast<float>(limit)) * kSlack;
   const float apart2 = dx * dx + dy * dy + dz * dz;
-  if (apart2 > within * within) return true;  // cannot touch within the horizon at the pair's relative speed
+  if (apart2 > within * within) return;  // cannot touch within the horizon at the pair's relative speed
   spent_ += price::kList;
-  Candidate pair;
-  pair.a = static_cast<std::int32_t>(a);
-  pair.b = static_cast<std::int32_t>(b);
-  pair.reach_m = reach;
-  pair.bulge_m = bulge;
-  pair.near_m = std::min(outlook.near_m, 0.5 * (arc - reach));  // half the gap of neighbours on a straight thread
-  // Neighbours along the thread get a lower bound of their gap from their spheres, exact where the thread is straight.
-  pair.due = along ? static_cast<double>(std::sqrt(apart2) / kSlack - halves) - reach : 0.0;
-  if (!along) {
-    spent_ += price::kExact;
-    const auto c = closest(state.x[a], state.x[a + 1], state.x[b], state.x[b + 1]);
-    if (c.distance2 > limit * limit) return true;
-    pair.due = std::sqrt(c.distance2) - reach - bulge;
+  const double near_m = std::min(outlook.near_m, 0.5 * (arc - reach));  // half the gap on a straight thread
+  close_[close_count_++] = {static_cast<std::int32_t>(a), static_cast<std::int32_t>(b), reach, bulge, near_m, limit};
+}
+
+bool BroadPhase::list_close(const State& state, std::vector<Candidate>& list) noexcept {
+  const std::size_t count = close_count_;
+  for (std::size_t k = 0; k < count; k += 4) {
+    std::array<std::size_t, 4> a{}, b{};
+    for (std::size_t l = 0; l < 4; ++l) {
+      const Close& close = close_[std::min(k + l, count - 1)];
+      a[l] = static_cast<std::size_t>(close.a), b[l] = static_cast<std::size_t>(close.b);
+    }
+    const FourSegments first(a, state.x.data()), second(b, state.x.data());
+    const Lanes distance = root(closest_along(first.e, second.e, second.x - first.x).distance2);
+    for (std::size_t l = 0; l < std::min<std::size_t>(4, count - k); ++l) {
+      const Close& close = close_[k + l];
+      if (distance[l] > close.limit) continue;
+      if (static_cast<int>(list.size()) >= capacity_) return false;
+      list.push_back({.a = close.a,
+                      .b = close.b,
+                      .reach_m = close.reach,
+                      .near_m = close.near_m,
+                      .due = distance[l] - close.reach - close.bulge,
+                      .bulge_m = close.bulge});
+      give_back(list.back());
+    }
   }
-  if (static_cast<int>(list.size()) >= capacity_) return false;
-  give_back(pair);
-  list.push_back(pair);
   return true;
 }
 
@@ -178,8 +189,7 @@ unsigned BroadPhase::near(std::size_t a, std::size_t q, float reach) const noexc
 
 bool BroadPhase::blocks(const State& state, const Motion& motion, const Outlook& outlook, std::size_t p, std::size_t q,
                         const PairList& list) noexcept {
-  constexpr long kDearest =
-      price::kSphere + static_cast<long>(kBlock) * (price::kConsider + price::kList + price::kExact);
+  constexpr long kDearest = price::kSphere + static_cast<long>(kBlock) * (price::kConsider + price::kList);
   const double rate = motion.rate_of_blocks(p, q);
   const auto reach =
       static_cast<float>(outlook.diameter_m + outlook.skin_m + outlook.horizon_s * rate) * kSlack * kSlack;
@@ -192,14 +202,15 @@ bool BroadPhase::blocks(const State& state, const Motion& motion, const Outlook&
   const unsigned real = left >= kBlock ? ~0U : (1U << left) - 1U;
   PairGroup group;
   group.first = static_cast<std::int32_t>(list.pairs.size());
+  close_count_ = 0;
   for (std::size_t a = p * kBlock; a < std::min((p + 1) * kBlock, state.x.size() - 1); ++a) {
     if (spent_ + kDearest > allowance_) return false;
     spent_ += price::kSphere;
     for (unsigned hits = near(a, q, reach) & real; hits != 0; hits &= hits - 1) {
-      const std::size_t b = q * kBlock + static_cast<std::size_t>(__builtin_ctz(hits));
-      if (!consider(state, motion, outlook, a, b, list.pairs)) return false;
+      consider(state, motion, outlook, a, q * kBlock + static_cast<std::size_t>(__builtin_ctz(hits)));
     }
   }
+  if (!list_close(state, list.pairs)) return false;
   group.last = static_cast<std::int32_t>(list.pairs.size());
   group.p = static_cast<std::int32_t>(p), group.q = static_cast<std::int32_t>(q);
   if (group.last > group.first) list.groups.push_back(group);

@@ -1,6 +1,7 @@
 #pragma once
 // Broad phase: the list of segment pairs that could touch before the list is rebuilt.
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -87,7 +88,8 @@ class BroadPhase {
   /// The members that an image saves (image.hpp): only the spent work, because a build() needs nothing from the build()
   /// before.
   [[nodiscard]] static auto members(BroadPhase& self) noexcept {
-    auto& [capacity, spent, allowance, asked, time, x, y, z, half, bulge, blocks, tree, kept, places] = self;
+    auto& [capacity, spent, allowance, asked, time, x, y, z, half, bulge, blocks, tree, kept, places, close,
+           close_count] = self;
     return std::tie(spent);
   }
 
@@ -101,9 +103,12 @@ class BroadPhase {
   [[nodiscard]] std::size_t place_of(std::int32_t a, std::int32_t b) const noexcept;
   void grow_tree(std::size_t blocks) noexcept;
   void give_back(Candidate& pair) const noexcept;
-  /// Adds segments a and b as a pair to the list if they are near enough. @return false if there was no room.
-  bool consider(const State& state, const Motion& motion, const Outlook& outlook, std::size_t a, std::size_t b,
-                std::vector<Candidate>& list) noexcept;
+  /// Adds segments a and b to close_ if their spheres are near enough.
+  void consider(const State& state, const Motion& motion, const Outlook& outlook, std::size_t a,
+                std::size_t b) noexcept;
+  /// Measures the pairs in close_, four at a time, and adds those to the list that are near enough.
+  /// @return false if there was no room.
+  bool list_close(const State& state, std::vector<Candidate>& list) noexcept;
   /// Bit mask of the segments of block q whose spheres are within `reach` of segment a's sphere.
   [[nodiscard]] unsigned near(std::size_t a, std::size_t q, float reach) const noexcept;
   /// Calls consider() for all pairs of a segment of block p and a segment of block q. @return false if room or work is
@@ -140,6 +145,12 @@ class BroadPhase {
   std::vector<Ball> tree_[kLevels];    // spheres of 2^level blocks, enlarged by horizon x speed
   std::vector<Kept> kept_;             // stored impulses
   std::vector<std::uint32_t> places_;  // hash table, open addressing, size a power of two: indices into kept_
+  struct Close {
+    std::int32_t a = 0, b = 0;
+    double reach = 0.0, bulge = 0.0, near_m = 0.0, limit = 0.0;
+  };
+  std::array<Close, kBlock * kBlock> close_;  // pairs of two blocks whose spheres are near
+  std::size_t close_count_ = 0;
 };
 
 }  // namespace ligature::physics::rod

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 #include <cstring>
-#include <vector>
 
+#include "firmware/physics/rod/solve/floats.hpp"
 #include "firmware/physics/rod/vec.hpp"
 
 namespace ligature::physics::rod {
@@ -31,7 +31,7 @@ inline void store_eight(float* at, Eight value) noexcept { std::memcpy(at, &valu
 /// full matrix, so rounding to 1e-7 of a velocity is far below the error of a pass. Impulses stay in double precision.
 class SweptVelocities {
  public:
-  void reserve(int nodes) { xyz_.assign(3 * (static_cast<std::size_t>(nodes) + 16), 0.0F); }
+  void reserve(int nodes) { xyz_.resize(3 * (static_cast<std::size_t>(nodes) + 16)); }
 
   /// Number of nodes rounded up to whole blocks, the length of a padded column.
   [[nodiscard]] static std::size_t padded(int nodes) noexcept {
@@ -76,7 +76,7 @@ class SweptVelocities {
   }
 
  private:
-  std::vector<float> xyz_;
+  Floats xyz_;
 };
 
 }  // namespace ligature::physics::rod
