@@ -27,17 +27,17 @@ inline constexpr long kBody = 190;           ///< added when the node may touch 
 inline constexpr long kBall = 60;            ///< broad phase: block against a sphere of the tree
 inline constexpr long kSphere = 130;         ///< broad phase: segment against a block of eight
 inline constexpr long kConsider = 75;        ///< broad phase: pair whose spheres overlap
-inline constexpr long kList = 140;           ///< broad phase: adding such a pair to the list
-inline constexpr long kExact = 100;          ///< broad phase: exact distance of such a pair
+inline constexpr long kList = 140;           ///< broad phase: exact distance of such a pair, and adding it to the list
 inline constexpr long kChangePerNode = 180;  ///< remeshing: one merge with one split, per node of the thread
 
 /// Price of setting up `rows` contact rows that act on a window of `nodes` nodes, and of the two solutions in
 /// ContactSet::start().
 [[nodiscard]] constexpr long rows(long rows, long nodes) noexcept { return 260 * rows + 170 * nodes; }
 /// Price of one pass of the sweep solver over `rows` rows, of which `loaded` carry an impulse and take part in Anderson
-/// mixing.
+/// mixing. Each row waits for the result of the row before, so the price follows from the time of a pass and is about
+/// 1.3 times its instruction count.
 [[nodiscard]] constexpr long pass(long rows, long loaded, long nodes) noexcept {
-  return rows * (115 + 3 * nodes / 2) + loaded * 180 + 130 * nodes;
+  return rows * (150 + 2 * nodes) + loaded * 235 + 130 * nodes;
 }
 /// Prices for a window of `nodes` nodes. factors(): copying the matrix factors. column(): one column of the inverse
 /// matrix.

@@ -1,8 +1,9 @@
 """The price of a pass over contacts (rod/work.hpp) against its instructions as counted by callgrind.
 
-Two runs of one substep differ only in the number of passes, so the difference is the cost of passes alone. A budget is a
-number of instructions, so the price must be near the cost. Of 134 random balls of thread (34 to 115 contacts) the price
-was 0.75 to 1.13 of the cost, on average 0.95, with a standard deviation of 0.07; with and without asserts."""
+Two runs of one substep differ only in the number of passes, so the difference is the cost of passes alone. The price
+follows from the time of a pass, in which each row waits for the result of the row before, so it is above the number of
+instructions. Of 30 random balls of thread (16 to 115 contacts) the price was 0.95 to 1.25 of the instructions, on
+average 1.10, with a standard deviation of 0.085."""
 
 import os
 import pathlib
@@ -33,10 +34,10 @@ class PassPrice(unittest.TestCase):
             cost, price = (many[0] - few[0]) / (MANY - FEW), (many[1] - few[1]) / (MANY - FEW)
             print(f"seed {seed}, {many[3]} contacts: a pass costs {cost:,.0f} instructions, its price is {price:,.0f}: {price / cost:.2f}")
             ratios.append(price / cost)
-        self.assertGreater(min(ratios), 0.6)
-        self.assertLess(max(ratios), 1.4)
+        self.assertGreater(min(ratios), 0.7)
+        self.assertLess(max(ratios), 1.6)
         mean = sum(ratios) / len(ratios)
-        self.assertTrue(0.75 < mean < 1.15, f"six standard errors from the mean above, but it is {mean:.2f}")
+        self.assertTrue(0.85 < mean < 1.35, f"six standard errors from the mean above, but it is {mean:.2f}")
 
 
 if __name__ == "__main__":
