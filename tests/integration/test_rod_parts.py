@@ -21,8 +21,9 @@ TICKS = 30
 TWIST = ["twist.cpp"]
 ROLL = ["spin.cpp", "spin_frames.cpp", "spin_set.cpp", "turning.cpp"]
 CONTACT = ["pair_search.cpp", "contact_collect.cpp", "contact_couplings.cpp", "contact_measure.cpp",
-           "contact_direct.cpp", "contact_newton.cpp", "contact_newton_step.cpp", "contact_metric.cpp", "dense.cpp",
-           "guard.cpp", "mixing.cpp", "motion.cpp", "motion.hpp", "smooth.hpp", "touch.hpp"]
+           "contact_places.cpp", "four_segments.hpp", "contact_direct.cpp", "contact_newton.cpp",
+           "contact_newton_step.cpp", "contact_metric.cpp", "dense.cpp", "guard.cpp", "mixing.cpp",
+           "motion.cpp", "motion.hpp", "smooth.hpp", "touch.hpp"]
 ADAPTIVE = ["refine.cpp", "merge_guard.cpp"]
 WORLD = re.compile(r"collect_floor|collect_body|afford_world")
 DRUM = re.compile(r"collect_body<true>")

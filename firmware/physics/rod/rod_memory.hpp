@@ -73,12 +73,11 @@ struct RodMatter {
   Spin spin_;
   ContactSet contacts_;
   Motion motion_;
-  long list_cost_ = 0;      ///< work of the last broad phase
   bool mesh_held_ = false;  ///< the caller remeshes by Rod::remesh()
   /// The members that an image saves (image.hpp): all but substep_, which follows from parts_.
   [[nodiscard]] static auto members(RodMatter& self) noexcept {
-    auto& [material, numerics, parts, substep, near_m, spin, contacts, motion, list_cost, mesh_held] = self;
-    return std::tie(material, numerics, parts, near_m, spin, contacts, motion, list_cost, mesh_held);
+    auto& [material, numerics, parts, substep, near_m, spin, contacts, motion, mesh_held] = self;
+    return std::tie(material, numerics, parts, near_m, spin, contacts, motion, mesh_held);
   }
 };
 

@@ -29,10 +29,8 @@ bool Rod::relist(long reserve) noexcept {
     if (most < BroadPhase::least_cost(state_.nodes())) break;
     horizon_s_ = outlook.horizon_s = ticks * numerics_.tick_s;
     ++report_.broad_phases;
-    const long before = work_.used();
     if (!broad_.build(state_, motion_, outlook, most, work_, {contacts_.pairs, contacts_.groups})) continue;
     stale_ = false;
-    list_cost_ = work_.used() - before;
     return true;
   }
   broad_.put_back({contacts_.pairs, contacts_.groups});
@@ -78,17 +76,16 @@ bool Rod::look(double dt_s) noexcept {
 }
 
 // Work that this substep may spend on setting up its contact rows and on passes over them. For each later substep of
-// the tick, the cost of the last contact detection and of the last rows with one pass are reserved; and once the cost
-// of a new list of pairs. Setting up rows may use all that is left. Of what is not reserved, passes get twice an equal
-// share, so that a hard substep leaves work for the next, and the last one may use all. Newton's method may use
-// everything, as a substep that does not converge is continued in the next tick.
+// the tick, the cost of the last contact detection and of the last rows with one pass are reserved. Setting up rows may
+// use all that is left. Of what is not reserved, passes get twice an equal share, so that a hard substep leaves work for
+// the next, and the last one may use all. Newton's method may use everything, as a substep that does not converge is
+// continued in the next tick.
 Rod::Allowance Rod::work_allowed(bool metric_too) const noexcept {
   const long after = report_.substeps - substep_index_ - 1;
   const auto span = contacts_.span();
   const long window = std::min(span.last - span.first + 1, metric_.capacity() - 4);
   const long metric = metric_too ? price::metric(state_.nodes(), window + 4) : 0;
-  const long looks = after * look_cost_ + (after > 0 ? list_cost_ : 0);
-  const long left = std::max(0L, work_.left() - metric - looks);
+  const long left = std::max(0L, work_.left() - metric - after * look_cost_);
   const long spare = std::max(0L, left - after * rows_cost_);
   const long for_passes = 2 * spare / (after + 2);
   return {window, work_.left() - metric, solves_directly() ? work_.left() - metric : for_passes};

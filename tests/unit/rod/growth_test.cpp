@@ -185,6 +185,7 @@ TEST(Growth, AListThatCannotBeAffordedKeepsTheImpulses) {
     if (!built) broad.put_back(list);
     return built;
   };
+  // With each of these allowances the search ends at another place
   for (int k = 0; k < 40; ++k)
     EXPECT_FALSE(build(std::max(BroadPhase::least_cost(state.nodes()), k * made.spent / 40)));
   EXPECT_TRUE(build(2 * made.spent));

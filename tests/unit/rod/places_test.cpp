@@ -144,7 +144,7 @@ TEST(Places, APairThatCarriesStaysTheOnlyContact) {
   EXPECT_EQ(contacts[0].node[0], 9);
 }
 
-// In a ball a segment touches many others, and each of these contacts is compared with a new pair of this segment.
+// In a ball a segment touches many others. A new pair is compared with the contacts near it on its first strand.
 TEST(Places, EachComparisonIsCharged) {
   const auto prepared = [](bool all_carry) {
     Crossing crossing(0.5, 0.5, -1e-6);

@@ -6,6 +6,7 @@
 #include "firmware/physics/closest.hpp"
 #include "firmware/physics/rod/contact/contact_set.hpp"
 #include "firmware/physics/rod/contact/four_segments.hpp"
+#include "firmware/physics/rod/contact/smooth.hpp"
 #include "firmware/physics/rod/tuning.hpp"
 
 namespace ligature::physics::rod {

@@ -15,6 +15,7 @@ namespace ligature::physics::rod {
 bool ContactSet::find_near(const State& state, double dt_s, Pieces& pieces) noexcept {
   near_.clear();
   const auto& mesh = state.mesh;
+  double reach_m = 0.0;
   for (std::size_t k = 0; k < due_.size(); ++k) {
     if (!pieces.allow(price::kPlace)) return false;
     const Measured& m = measured_[k];
@@ -23,14 +24,18 @@ bool ContactSet::find_near(const State& state, double dt_s, Pieces& pieces) noex
     const double gap = m.distance_m - pair.reach_m, spare = gap - pair.near_m, s = m.s, t = m.t;
     const Vec u = (1.0 - t) * state.v[b] + t * state.v[b + 1] - (1.0 - s) * state.v[a] - s * state.v[a + 1];
     if (spare > 0.0 && spare * spare > 4.0 * dt_s * dt_s * dot(u, u)) continue;
+    reach_m = std::max(reach_m, pair.reach_m);
     const bool loaded = dot(pair.impulse, pair.impulse) > 0.0;
     const double ahead_m = m.distance_m > 1e-12 ? dt_s * dot(u, m.between) / m.distance_m : 0.0;
     near_.push_back({static_cast<std::int32_t>(k), -1,
                      gap + ahead_m - (loaded ? tuning.place_stays_d * pair.reach_m : 0.0), mesh.s[a] + s * mesh.rest[a],
                      mesh.s[b] + t * mesh.rest[b], loaded});
   }
-  std::fill(heads_.begin(), heads_.end(), -1);
-  bins_per_m_ = static_cast<double>(heads_.size()) / mesh.s.back();
+  // Bins are at least as wide as places, so that the points at one place lie in three neighbouring bins
+  const double length_m = mesh.s.back(), most = static_cast<double>(heads_.capacity());
+  const double bins = std::min(std::max(1.0, std::floor(length_m / (tuning.place_d * reach_m))), most);
+  heads_.assign(static_cast<std::size_t>(bins), -1);  // never allocates: reserved for `most` bins
+  bins_per_m_ = bins / length_m;
   return true;
 }
 

@@ -17,7 +17,7 @@ void ContactSet::reserve(int nodes, int bodies, int window) {
   for (auto* array : {&close_, &far_}) array->reserve(pairs.capacity() + 4);
   measured_.resize(pairs.capacity());
   near_.reserve(pairs.capacity());
-  heads_.assign(8 * n, -1);
+  heads_.reserve(8 * n);
   corner_.assign(n, Vec{});
   share_.assign(n, 0.0);
   groups.reserve(pairs.capacity());
@@ -124,7 +124,7 @@ void ContactSet::sweep(const Vec* v, TickTime& time) noexcept {
   Pieces pieces(time);
   swept_.load(v + window_first_, window_last_ - window_first_ + 1);
   const float* column = columns_.data();
-  for (int index = 0; index < rows_ && pieces.allow(115 + static_cast<long>(stride_) * 3 / 2);
+  for (int index = 0; index < rows_ && pieces.allow(price::row_of_pass(static_cast<long>(stride_)));
        ++index, column += stride_) {  // a sweep cut off by the clock is still a valid sweep of fewer rows
     Contact& c = contacts_[static_cast<std::size_t>(index)];
     Vec u = swept_.mix(c.place, c.weight, c.count) - c.surface;

@@ -2,6 +2,7 @@
 // Four segments of the thread, stored by component, so that four pairs are measured at once.
 
 #include <array>
+#include <cstddef>
 
 #include "firmware/physics/rod/contact/smooth.hpp"
 

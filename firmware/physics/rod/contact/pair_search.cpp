@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 
 #include "firmware/physics/closest.hpp"
 #include "firmware/physics/rod/contact/four_segments.hpp"
+#include "firmware/physics/rod/contact/smooth.hpp"
 #include "firmware/physics/rod/tuning.hpp"
 
 namespace ligature::physics::rod {
@@ -143,6 +145,7 @@ void BroadPhase::consider(const State& state, const Motion& motion, const Outloo
   if (apart2 > within * within) return;  // cannot touch within the horizon at the pair's relative speed
   spent_ += price::kList;
   const double near_m = std::min(outlook.near_m, 0.5 * (arc - reach));  // half the gap on a straight thread
+  assert(close_count_ < close_.size());
   close_[close_count_++] = {static_cast<std::int32_t>(a), static_cast<std::int32_t>(b), reach, bulge, near_m, limit};
 }
 
@@ -158,14 +161,14 @@ bool BroadPhase::list_close(const State& state, std::vector<Candidate>& list) no
     const Lanes distance = root(closest_along(first.e, second.e, second.x - first.x).distance2);
     for (std::size_t l = 0; l < std::min<std::size_t>(4, count - k); ++l) {
       const Close& close = close_[k + l];
-      if (distance[l] > close.limit) continue;
+      if (distance[l] > close.limit_m) continue;
       if (static_cast<int>(list.size()) >= capacity_) return false;
       list.push_back({.a = close.a,
                       .b = close.b,
-                      .reach_m = close.reach,
+                      .reach_m = close.reach_m,
                       .near_m = close.near_m,
-                      .due = distance[l] - close.reach - close.bulge,
-                      .bulge_m = close.bulge});
+                      .due = distance[l] - close.reach_m - close.bulge_m,
+                      .bulge_m = close.bulge_m});
       give_back(list.back());
     }
   }

@@ -111,7 +111,7 @@ class BroadPhase {
   bool list_close(const State& state, std::vector<Candidate>& list) noexcept;
   /// Bit mask of the segments of block q whose spheres are within `reach` of segment a's sphere.
   [[nodiscard]] unsigned near(std::size_t a, std::size_t q, float reach) const noexcept;
-  /// Calls consider() for all pairs of a segment of block p and a segment of block q. @return false if room or work is
+  /// Lists the near pairs of a segment of block p and a segment of block q as a group. @return false if room or work is
   /// used up.
   bool blocks(const State& state, const Motion& motion, const Outlook& outlook, std::size_t p, std::size_t q,
               const PairList& list) noexcept;
@@ -147,7 +147,8 @@ class BroadPhase {
   std::vector<std::uint32_t> places_;  // hash table, open addressing, size a power of two: indices into kept_
   struct Close {
     std::int32_t a = 0, b = 0;
-    double reach = 0.0, bulge = 0.0, near_m = 0.0, limit = 0.0;
+    double reach_m = 0.0, bulge_m = 0.0, near_m = 0.0;  // as in Candidate
+    double limit_m = 0.0;                               // distance of the chords below which the pair is listed
   };
   std::array<Close, kBlock * kBlock> close_;  // pairs of two blocks whose spheres are near
   std::size_t close_count_ = 0;
