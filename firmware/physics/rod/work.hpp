@@ -33,8 +33,8 @@ inline constexpr long kChangePerNode = 180;  ///< remeshing: one merge with one 
 /// Price of setting up `rows` contact rows that act on a window of `nodes` nodes, and of the two solutions in
 /// ContactSet::start().
 [[nodiscard]] constexpr long rows(long rows, long nodes) noexcept { return 260 * rows + 170 * nodes; }
-/// Price of one row in a pass of the sweep solver. Each row waits for the result of the row before, so the price
-/// follows from its time: 1.3 times its instructions where the contacts are between smooth curves, less elsewhere.
+/// Price of one row in a pass of the sweep solver, 1.3 times its instructions. Each row waits for the result of the row
+/// before, so with contacts between smooth curves it takes as long as other work of so many instructions.
 [[nodiscard]] constexpr long row_of_pass(long nodes) noexcept { return 150 + 2 * nodes; }
 /// Price of one pass over `rows` rows, of which `loaded` carry an impulse and take part in Anderson mixing.
 [[nodiscard]] constexpr long pass(long rows, long loaded, long nodes) noexcept {

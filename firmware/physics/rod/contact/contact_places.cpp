@@ -31,8 +31,9 @@ bool ContactSet::find_near(const State& state, double dt_s, Pieces& pieces) noex
                      gap + ahead_m - (loaded ? tuning.place_stays_d * pair.reach_m : 0.0), mesh.s[a] + s * mesh.rest[a],
                      mesh.s[b] + t * mesh.rest[b], loaded});
   }
+  if (near_.empty()) return true;
   // Bins are at least as wide as places, so that the points at one place lie in three neighbouring bins
-  const double length_m = mesh.s.back(), most = static_cast<double>(heads_.capacity());
+  const double length_m = mesh.s.back(), most = static_cast<double>(kBinsPerNode * state.x.size());
   const double bins = std::min(std::max(1.0, std::floor(length_m / (tuning.place_d * reach_m))), most);
   heads_.assign(static_cast<std::size_t>(bins), -1);  // never allocates: reserved for `most` bins
   bins_per_m_ = bins / length_m;

@@ -17,7 +17,7 @@ void ContactSet::reserve(int nodes, int bodies, int window) {
   for (auto* array : {&close_, &far_}) array->reserve(pairs.capacity() + 4);
   measured_.resize(pairs.capacity());
   near_.reserve(pairs.capacity());
-  heads_.reserve(8 * n);
+  heads_.reserve(kBinsPerNode * n);
   corner_.assign(n, Vec{});
   share_.assign(n, 0.0);
   groups.reserve(pairs.capacity());

@@ -90,6 +90,7 @@ class ContactWork {
   std::vector<std::int32_t> close_, far_;  // indices into due_: measured between smooth curves; between chords only
   std::vector<Measured> measured_;         // in the order of due_
   std::vector<Near> near_;                 // pairs that are near enough to be contacts
+  static constexpr std::size_t kBinsPerNode = 8;  // at most
   std::vector<std::int32_t> heads_;  // per bin of the thread: first contact in near_ with its point a in it, or -1
   double bins_per_m_ = 0.0;          // all bins together are as long as the thread
   std::vector<Vec> corner_;          // corner vectors k_i of the smooth curve (smooth.hpp) at nodes

@@ -8,11 +8,13 @@
 
 namespace ligature::physics::rod {
 
+/// number_of(0) to number_of(3).
 template <class F>
 [[nodiscard]] Lanes each(F number_of) noexcept {
   return Lanes{number_of(0), number_of(1), number_of(2), number_of(3)};
 }
 
+/// Four segments, which need not be different.
 struct FourSegments {
   std::array<std::size_t, 4> j;  ///< the segments
   Vecs x, e;                     ///< their first nodes; the vectors to their second nodes
