@@ -58,8 +58,8 @@ double lost_share(Tightening& pull, int ticks, double speed = 0.0, int* guard = 
 }
 
 // Two rules keep the time lost in a hold low: the solver starts from the old impulses unchanged, not projected onto the
-// friction cones; and contact points do not oscillate (touch.hpp). Measured share of time lost: 20 % without the first
-// rule (pull at 0.15 m/s), 74 % without the second (0.22 m/s), 50 % without both (0.2 m/s).
+// friction cones (20 % were lost without this, after a pull at 0.15 m/s); and contact points do not oscillate
+// (touch.hpp, Touch.*).
 TEST(Hold, OfTwoThrowsLosesHardlyAnyTime) {
   double mean = 0.0;
   const auto drawn = speeds(8, 0.15, 0.24, 601);

@@ -33,8 +33,9 @@ struct PullResult {
   knot::KnotResult begun, left;
   int guard = 0;
   double pull_d = 0.0, hold_d = 0.0, after_d = 0.0;  ///< largest penetration in each stage, in thread diameters
-  /// Share of each stage's time in which the thread was not moved (time lost)
-  double pull_lost = 0.0, hold_lost = 0.0, after_lost = 0.0;
+  /// Share of each stage's time in which the thread was not moved (time lost). hold_lost: in the hold and the 0.3 s
+  /// before it; held_lost: in the hold alone
+  double pull_lost = 0.0, hold_lost = 0.0, held_lost = 0.0, after_lost = 0.0;
   double strain = 0.0, tension_N = 0.0;    ///< measured in the hold
   double turn_rad = 0.0, segment_d = 0.0;  ///< sharpest turn and longest segment in contact, measured in the hold
   double chatter = 0.0, sliding = 0.0;     ///< chatter of the force (chatter.hpp) in the hold, during the pull

@@ -23,8 +23,8 @@ FORCE the four of them; with SUDDEN (0, 1) and HANDS (1, 2) one, after which key
 the knot 5 s after the release and whether it is the one of the start; guard events; worst penetration, diameters, in
 the pull, the hold and after; strain against T / EA; largest turn a node and longest segment in contact, in the hold;
 chatter of the force in the hold and while sliding; share of the time in which the thread stood still for want of work,
-in the pull, the hold (and before it) and after; CPU time of the thread a tick, us, and work on contact, thousand
-instructions: median, p99, worst.
+in the pull, the hold (and 0.3 s before it), after, and in the hold alone; CPU time of the thread a tick, us, and work
+on contact, thousand instructions: median, p99, worst.
 
 --repeat N runs each pull N times. The rod is deterministic: every tick must do the same work and end with the same
 nodes and forces, bit by bit, else the study fails. "least of N" is made of each tick's fastest run: what the tick
@@ -68,11 +68,12 @@ void print(const char* name, const std::vector<double>& values) {
 void print(const scene::Scene& scene, const Pull& pull, const PullResult& r, const Repeated& repeated) {
   std::printf(
       "%4.2f m/s %4.1f N %s %d hand(s): %s %s %s guard %d penetration %.2f %.3f %.2f strain %.2f%% (T/EA %.2f%%) "
-      "turn %.2f segment %.2f d chatter %.4f%% sliding %.2f%% lost %.2f%% %.2f%% %.2f%%",
+      "turn %.2f segment %.2f d chatter %.4f%% sliding %.2f%% lost %.2f%% %.2f%% %.2f%%, hold alone %.2f%%",
       pull.speed_m_per_s, pull.force_N, pull.sudden ? "sudden" : "gentle", pull.hands, r.left.type.c_str(),
       r.left.handedness.c_str(), r.kept() ? "kept" : ("LOST, was " + r.begun.type).c_str(), r.guard, r.pull_d, r.hold_d,
       r.after_d, 100.0 * r.strain, 100.0 * r.tension_N / scene.suture.rod.EA_N, r.turn_rad, r.segment_d,
-      100.0 * r.chatter, 100.0 * r.sliding, 100.0 * r.pull_lost, 100.0 * r.hold_lost, 100.0 * r.after_lost);
+      100.0 * r.chatter, 100.0 * r.sliding, 100.0 * r.pull_lost, 100.0 * r.hold_lost, 100.0 * r.after_lost,
+      100.0 * r.held_lost);
   std::vector<double> us, work_k;
   for (const auto& t : repeated.first()) us.push_back(t.us), work_k.push_back(1e-3 * static_cast<double>(t.work));
   print("us", us);

@@ -111,7 +111,7 @@ TEST(Places, OnlyAPairWithoutImpulseIsLeftOutForANearerOne) {
       pair.bulge_m = 0.0;  // contact between chords
       if (!random.happens(0.3)) continue;
       pair.impulse = make(0, 0, 1e-6);
-      pair.touch.begin((pair.a + 0.5) * kStrandDiameter_m, (pair.b + 0.5) * kStrandDiameter_m);
+      pair.touch = {(pair.a + 0.5) * kStrandDiameter_m, (pair.b + 0.5) * kStrandDiameter_m};
     }
     const auto near = near_pairs(crossing);
     for (const NearPair& one : near) {
@@ -137,11 +137,34 @@ TEST(Places, APairThatCarriesStaysTheOnlyContact) {
   ASSERT_EQ(crossing.collect()[0].node[0], 10);
   for (Candidate& pair : crossing.contacts.pairs) {
     if (pair.a != 9 || pair.b != 31) continue;
-    pair.impulse = make(0, 0, 1e-6), pair.touch.begin(10 * kStrandDiameter_m, 31.5 * kStrandDiameter_m);
+    pair.impulse = make(0, 0, 1e-6), pair.touch = {10 * kStrandDiameter_m, 31.5 * kStrandDiameter_m};
   }
   const auto& contacts = crossing.collect();
   ASSERT_EQ(contacts.size(), 1U);
   EXPECT_EQ(contacts[0].node[0], 9);
+}
+
+// The strands cross in the middle of segments 10 and 31. The impulse of the last substep acted elsewhere on them.
+TEST(Places, AnImpulseActsWhereItsTouchFollowsTo) {
+  for (const double cosine : {-0.95, 0.0, 0.8}) {
+    Crossing crossing(0.5, 0.5, -1e-6);
+    for (std::size_t i = 21; i < kNodes; ++i) {
+      const double along = crossing.state.x[i][1], across = std::sqrt(1.0 - cosine * cosine);
+      crossing.state.x[i] = make(cosine * along, across * along, crossing.state.x[i][2]);
+    }
+    std::erase_if(crossing.contacts.pairs, [](const Candidate& pair) { return pair.a != 10 || pair.b != 31; });
+    crossing.contacts.groups[0].last = 1;
+    Candidate& pair = crossing.contacts.pairs[0];
+    pair.bulge_m = 0.0;  // contact between chords
+    pair.impulse = make(0, 0, 1e-6);
+    pair.touch = {10.2 * kStrandDiameter_m, 31.9 * kStrandDiameter_m};
+    Touch expected = pair.touch;
+    expected.follow(10.5 * kStrandDiameter_m, 31.5 * kStrandDiameter_m, cosine);
+    const auto& contacts = crossing.collect();
+    ASSERT_EQ(contacts.size(), 1U);
+    EXPECT_NEAR(-contacts[0].w[1], expected.a / kStrandDiameter_m - 10.0, 1e-9) << cosine;
+    EXPECT_NEAR(contacts[0].w[3], expected.b / kStrandDiameter_m - 31.0, 1e-9) << cosine;
+  }
 }
 
 // In a ball a segment touches many others. A new pair is compared with the contacts near it on its first strand.
@@ -152,7 +175,7 @@ TEST(Places, EachComparisonIsCharged) {
       pair.near_m = 1.0, pair.bulge_m = 0.0;  // all 49 pairs are near
       if (!all_carry && pair.a == 10 && pair.b == 28) continue;
       pair.impulse = make(0, 0, 1e-6);
-      pair.touch.begin((pair.a + 0.5) * kStrandDiameter_m, (pair.b + 0.5) * kStrandDiameter_m);
+      pair.touch = {(pair.a + 0.5) * kStrandDiameter_m, (pair.b + 0.5) * kStrandDiameter_m};
     }
     return crossing;
   };

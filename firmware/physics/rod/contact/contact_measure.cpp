@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "firmware/physics/closest.hpp"
 #include "firmware/physics/rod/contact/contact_set.hpp"
@@ -13,12 +14,15 @@ namespace ligature::physics::rod {
 namespace {
 
 /// Replaces the closest points s, t by the points at which the pair's impulse acts (touch.hpp).
-void press(Candidate& pair, const Mesh& mesh, double& s, double& t) noexcept {
+void press(Candidate& pair, const State& state, double& s, double& t) noexcept {
+  const Mesh& mesh = state.mesh;
   const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
   const double at_a = mesh.s[a] + s * mesh.rest[a], at_b = mesh.s[b] + t * mesh.rest[b];
-  if (dot(pair.impulse, pair.impulse) == 0.0) return pair.next.begin(at_a, at_b);
+  pair.next = {at_a, at_b};
+  if (dot(pair.impulse, pair.impulse) == 0.0) return;
+  const Vec e = state.x[a + 1] - state.x[a], f = state.x[b + 1] - state.x[b];
   pair.next = pair.touch;
-  pair.next.follow(at_a, at_b);
+  pair.next.follow(at_a, at_b, dot(e, f) / std::max(std::sqrt(dot(e, e) * dot(f, f)), 1e-300));
   s = clamp01((pair.next.a - mesh.s[a]) * mesh.inv_rest[a]);
   t = clamp01((pair.next.b - mesh.s[b]) * mesh.inv_rest[b]);
 }
@@ -184,7 +188,7 @@ bool ContactSet::take(Candidate& pair, const Measured& m, const State& state, do
     watched_.push_back({pair.a, pair.b, m.chord_m});  // never allocates: reserved for all pairs
     return false;
   }
-  press(pair, state.mesh, s, t);
+  press(pair, state, s, t);
   Contact* const made = add();
   if (made == nullptr) return pair.impulse = Vec{}, true;  // safe_fraction() is then 0: nothing moves
   Contact& contact = *made;

@@ -1,37 +1,34 @@
 #pragma once
 // The points along the thread at which a contact's impulse acts.
 
-#include <algorithm>
-
 #include "firmware/physics/members.hpp"
+#include "firmware/physics/rod/tuning.hpp"
 
 namespace ligature::physics::rod {
 
-/// The points of a pair at which its impulse acts. They follow the closest points found at the start of each substep,
-/// but not at once. Where two strands are almost parallel, a tiny rotation moves the closest points far, and the
-/// impulse there rotates the strands back one substep later. This delayed feedback makes the closest points oscillate
-/// (by 1.5 % of a segment in a held square knot, which moved a loose neighbour at 25 mm/s). So the points move only by
-/// `share` of the way to the closest points. Aitken relaxation adapts the share [Irons & Tuck 1969]; it is 1 where
-/// there is no such feedback, as when strands slide.
+/// The points of a pair at which its impulse acts: a and b, material coordinates, m. They follow the closest points of
+/// the two strands, found at the start of each substep, but not all the way. Where strands are almost parallel, a tiny
+/// rotation moves the closest points far, and the impulse there rotates the strands back one substep later. This
+/// delayed feedback would make the points oscillate. So a and b minimise
+///   d(a, b)^2 / 2 + lag ((a - a_before)^2 + (b - b_before)^2) / 2,   lag = Tuning::touch_lag
+/// where d is the distance of the points, and each strand is taken as straight (Tikhonov regularisation). With the
+/// cosine c of the angle between the strands, d^2 has the curvature 1 - c for a common motion of both points, and 1 + c
+/// for opposite motions. So the points go the share h / (h + lag) of the way, with h = 1 - c and 1 + c. A rotation
+/// moves the closest points in proportion to 1 / h, so the feedback is in proportion to 1 / (h + lag): bounded at any
+/// angle.
 struct Touch {
-  double a = 0.0, b = 0.0;          ///< material coordinates, m
-  double way_a = 0.0, way_b = 0.0;  ///< way to the closest points in the last substep, m
-  double share = 1.0;               ///< share of that way by which the points moved
+  double a = 0.0, b = 0.0;
 
-  /// Starts a new contact at the closest points.
-  void begin(double at_a, double at_b) noexcept { *this = {at_a, at_b}; }
-  /// Moves towards the new closest points.
-  void follow(double to_a, double to_b) noexcept {
-    const double now_a = to_a - a, now_b = to_b - b;
-    const double last2 = way_a * way_a + way_b * way_b;
-    if (last2 > 0.0) {
-      const double rest = (now_a * way_a + now_b * way_b) / last2;  // remaining share of the last way; < 0: overshoot
-      share = rest < 1.0 ? std::min(1.0, share / (1.0 - rest)) : 1.0;
-    }
-    way_a = now_a, way_b = now_b;
-    a += share * now_a, b += share * now_b;
+  /// Moves towards the closest points of strands with this cosine, -1 to 1.
+  void follow(double to_a, double to_b, double cosine) noexcept {
+    const double common = share(1.0 - cosine) * ((to_a - a) + (to_b - b));
+    const double opposite = share(1.0 + cosine) * ((to_a - a) - (to_b - b));
+    a += 0.5 * (common + opposite), b += 0.5 * (common - opposite);
   }
-  LIGATURE_MEMBERS(Touch, a, b, way_a, way_b, share)
+  LIGATURE_MEMBERS(Touch, a, b)
+
+ private:
+  [[nodiscard]] static double share(double h) noexcept { return h / (h + tuning.touch_lag); }
 };
 
 }  // namespace ligature::physics::rod
