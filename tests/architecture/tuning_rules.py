@@ -8,7 +8,7 @@ import re
 import sys
 
 FOLDER, TABLE = "firmware/physics/rod", "firmware/physics/rod/tuning.hpp"
-MOST = 31  # numbers in the table: may only fall
+MOST = 31  # numbers in the table: may only fall, or rise by one where a whole rule goes for it
 # Prices are measured (work.hpp), and a material's default values are those of a real thread (material.hpp).
 OTHERS = {"work.hpp", "material.hpp", "tuning.hpp"}
 # Halves, quarters, small whole numbers and powers of two are mathematics. Numbers as small as rounding and as large as

@@ -20,9 +20,9 @@ struct Tuning {
   /// A pair with an impulse counts as nearer by place_stays_d, d. With 0, contacts alternate and 1.5 % is lost; with
   /// more than the overlap of loaded strands, hooked strands pass through each other. Test: Places.*, Hooked.*
   double place_d = 0.5, place_stays_d = 0.003;
-  /// How far the points of a contact lag behind the closest points (touch.hpp). Square knots pulled at 0.1 to 0.3 m/s
-  /// (120 pulls) used more than 4 million instructions in 2.7 % of the ticks of their hold with 0, in 0.3 % with 0.03
-  /// to 0.1; some of them in nearly all ticks with 0. Test: Touch.*
+  /// Weight of the motion of a contact's points along the thread, beside that of their distance (touch.hpp). Square
+  /// knots pulled at 0.1 to 0.3 m/s (120 pulls) used more than 4 million instructions in 2.7 % of the ticks of their
+  /// hold with 0 (one of them in 71 %), in 0.4 % with 0.05 (12 %). Test: Touch.*
   double touch_lag = 0.05;
   /// Stiffness of a contact, N/m: 2 N overlap by 1 % of a diameter. Rigid contacts of straight segments have no
   /// solution in a tight loop. Test: Overhand.HoldsAfterAPullToFiveNewtons

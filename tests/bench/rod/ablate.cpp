@@ -49,7 +49,7 @@ const std::vector<Number> kNumbers = {
     NUMBER(skin_d),
     NUMBER(place_d, 0.0, 0.25, 0.8),
     NUMBER(place_stays_d, 0.0, 0.01),
-    NUMBER(touch_lag, 0.0, 0.02, 0.2),
+    NUMBER(touch_lag, 1e-9, 0.02, 0.2),
     NUMBER(contact_N_per_m),
     NUMBER(recovery),
     NUMBER(most_cut_d, 0.175, 0.45),

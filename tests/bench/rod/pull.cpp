@@ -38,7 +38,7 @@ PullResult Puller::run(const Pull& pull) {
   const std::size_t ticks_before = ticks_.size();
   phase(options_.hold_s, 0.0, pull.hands, 0.0);
   r.held_J = rise_J_;
-  r.held_lost = (lost_ - lost_before) / static_cast<double>(ticks_.size() - ticks_before);
+  r.held_lost = (lost_ - lost_before) / std::max(1.0, static_cast<double>(ticks_.size() - ticks_before));
   save("held");
   r.hold_d = std::exchange(penetration_, 0.0);
   r.hold_lost = lost();

@@ -67,7 +67,7 @@ void print(const char* name, const std::vector<double>& values) {
 
 void print(const scene::Scene& scene, const Pull& pull, const PullResult& r, const Repeated& repeated) {
   std::printf(
-      "%4.2f m/s %4.1f N %s %d hand(s): %s %s %s guard %d penetration %.2f %.3f %.2f strain %.2f%% (T/EA %.2f%%) "
+      "%5.3f m/s %4.1f N %s %d hand(s): %s %s %s guard %d penetration %.2f %.3f %.2f strain %.2f%% (T/EA %.2f%%) "
       "turn %.2f segment %.2f d chatter %.4f%% sliding %.2f%% lost %.2f%% %.2f%% %.2f%%, hold alone %.2f%%",
       pull.speed_m_per_s, pull.force_N, pull.sudden ? "sudden" : "gentle", pull.hands, r.left.type.c_str(),
       r.left.handedness.c_str(), r.kept() ? "kept" : ("LOST, was " + r.begun.type).c_str(), r.guard, r.pull_d, r.hold_d,

@@ -144,23 +144,29 @@ TEST(Places, APairThatCarriesStaysTheOnlyContact) {
   EXPECT_EQ(contacts[0].node[0], 9);
 }
 
-// The strands cross in the middle of segments 10 and 31. The impulse of the last substep acted elsewhere on them.
-TEST(Places, AnImpulseActsWhereItsTouchFollowsTo) {
-  for (const double cosine : {-0.95, 0.0, 0.8}) {
-    Crossing crossing(0.5, 0.5, -1e-6);
+// Segments 10 and 31 alone, with this cosine of the angle between their strands. The impulse of the last substep acted
+// at `touch`; lengths in segments.
+struct OnePair : Crossing {
+  OnePair(double cosine, double at_a, double at_b, double touch_a, double touch_b) : Crossing(at_a, at_b, -1e-6) {
     for (std::size_t i = 21; i < kNodes; ++i) {
-      const double along = crossing.state.x[i][1], across = std::sqrt(1.0 - cosine * cosine);
-      crossing.state.x[i] = make(cosine * along, across * along, crossing.state.x[i][2]);
+      const double along = state.x[i][1], across = std::sqrt(1.0 - cosine * cosine);
+      state.x[i] = make(cosine * along, across * along, state.x[i][2]);
     }
-    std::erase_if(crossing.contacts.pairs, [](const Candidate& pair) { return pair.a != 10 || pair.b != 31; });
-    crossing.contacts.groups[0].last = 1;
-    Candidate& pair = crossing.contacts.pairs[0];
+    std::erase_if(contacts.pairs, [](const Candidate& pair) { return pair.a != 10 || pair.b != 31; });
+    contacts.groups[0].last = 1;
+    Candidate& pair = contacts.pairs[0];
     pair.bulge_m = 0.0;  // contact between chords
     pair.impulse = make(0, 0, 1e-6);
-    pair.touch = {10.2 * kStrandDiameter_m, 31.9 * kStrandDiameter_m};
-    Touch expected = pair.touch;
+    pair.touch = {(10.0 + touch_a) * kStrandDiameter_m, (31.0 + touch_b) * kStrandDiameter_m};
+  }
+};
+
+TEST(Places, AnImpulseActsWhereItsTouchFollowsTo) {
+  for (const double cosine : {-0.95, 0.0, 0.8}) {
+    OnePair pair(cosine, 0.5, 0.5, 0.2, 0.9);
+    Touch expected = pair.contacts.pairs[0].touch;
     expected.follow(10.5 * kStrandDiameter_m, 31.5 * kStrandDiameter_m, cosine);
-    const auto& contacts = crossing.collect();
+    const auto& contacts = pair.collect();
     ASSERT_EQ(contacts.size(), 1U);
     EXPECT_NEAR(-contacts[0].w[1], expected.a / kStrandDiameter_m - 10.0, 1e-9) << cosine;
     EXPECT_NEAR(contacts[0].w[3], expected.b / kStrandDiameter_m - 31.0, 1e-9) << cosine;

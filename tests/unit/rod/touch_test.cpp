@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "firmware/physics/rod/contact/touch.hpp"
 
@@ -13,31 +15,41 @@ namespace {
 using physics::rod::Touch;
 using physics::rod::tuning;
 
-constexpr double kCosines[] = {-1.0, -0.999999, -0.9, -0.3, 0.0, 0.4, 0.99, 0.9999, 0.999999999};
+constexpr double kCosines[] = {-1.0, -0.999999, -0.9, -0.3, 0.0, 0.4, 0.99, 0.9999, 0.999999999, 1.0};
 
-// Pressing at x turns strands that cross at the origin by an angle in proportion to x. So in the next substep their
+// Pressing at x turns strands that cross at the origin by an angle in proportion to x. So `delay` substeps later their
 // closest points are at -gain x / h, with h = 1 - c where both points move alike, 1 + c where they move oppositely. If
-// the points followed all the way, x would be multiplied by gain / h in each substep.
-void ring(Touch& touch, double cosine, double gain) {
+// the points followed all the way, x would be multiplied by gain / h in each substep. @return the largest of the last
+// motions of a and b that change the distance of parallel strands
+double rest_of_ringing(double cosine, double gain, std::size_t delay) {
   const double h = 1.0 - cosine, against = 1.0 + cosine;
-  const double common = h > 0.0 ? -gain / h * (touch.a + touch.b) : 0.0;
-  const double opposite = against > 0.0 ? -gain / against * (touch.a - touch.b) : 0.0;
-  touch.follow(0.5 * (common + opposite), 0.5 * (common - opposite), cosine);
+  std::vector<Touch> past(delay, Touch{1e-4, 0.7e-4});
+  Touch touch = past.back();
+  for (int k = 0; k < 1000; ++k) {
+    const Touch& pressed = past.front();
+    const double common = h > 0.0 ? -gain / h * (pressed.a + pressed.b) : 0.0;
+    const double opposite = against > 0.0 ? -gain / against * (pressed.a - pressed.b) : 0.0;
+    touch.follow(0.5 * (common + opposite), 0.5 * (common - opposite), cosine);
+    past.erase(past.begin());
+    past.push_back(touch);
+  }
+  return std::max(h > 0.0 ? std::abs(touch.a + touch.b) : 0.0, against > 0.0 ? std::abs(touch.a - touch.b) : 0.0);
 }
 
 TEST(Touch, ComesToRestAtAnyAngleWhileTheGainIsBelowTwiceTheLag) {
   for (const double cosine : kCosines) {
-    for (const double gain : {0.5, 1.0, 1.9}) {
-      Touch touch{1e-4, 0.7e-4};
-      for (int k = 0; k < 300; ++k) ring(touch, cosine, gain * tuning.touch_lag);
-      if (cosine < 1.0) {
-        EXPECT_LT(std::abs(touch.a + touch.b), 1e-9) << cosine << ' ' << gain;
-      }
-      if (cosine > -1.0) {
-        EXPECT_LT(std::abs(touch.a - touch.b), 1e-9) << cosine << ' ' << gain;
-      }
-    }
+    for (const double gain : {0.5, 1.0, 1.9})
+      EXPECT_LT(rest_of_ringing(cosine, gain * tuning.touch_lag, 1), 1e-9) << cosine << ' ' << gain;
   }
+  EXPECT_GT(rest_of_ringing(0.999999, 2.1 * tuning.touch_lag, 1), 1e-4) << "the bound is sharp";
+}
+
+TEST(Touch, ComesToRestAfterADelayOfTwoSubstepsWhileTheGainIsBelowTheLag) {
+  for (const double cosine : kCosines) {
+    for (const double gain : {0.25, 0.5, 0.95})
+      EXPECT_LT(rest_of_ringing(cosine, gain * tuning.touch_lag, 2), 1e-9) << cosine << ' ' << gain;
+  }
+  EXPECT_GT(rest_of_ringing(0.999999, 1.1 * tuning.touch_lag, 2), 1e-4) << "the bound is sharp";
 }
 
 // Closest points that go on by the way w in each substep are `lag w / h` ahead of the touch, the sum of a geometric
@@ -53,6 +65,18 @@ TEST(Touch, LagsBehindWhatSlidesByTheLagOverH) {
       EXPECT_NEAR(touch.b, sense * touch.a, 1e-6 * kWay) << cosine << ' ' << sense;
     }
   }
+}
+
+// By the law alone, a would go back by a quarter of b's way.
+TEST(Touch, GoesNeitherBackNorBeyondTheClosestPoint) {
+  Touch touch{1e-4, 1e-4};
+  touch.follow(1e-4, 3e-4, 0.9999);
+  EXPECT_DOUBLE_EQ(touch.a, 1e-4);
+  EXPECT_NEAR(touch.b, 1e-4 + 0.5 * 2e-4 * (1e-4 / (1e-4 + tuning.touch_lag) + 1.9999 / (1.9999 + tuning.touch_lag)),
+              1e-12);
+  touch = {1e-4, 1e-4};
+  touch.follow(1.1e-4, -9e-4, 0.9999);  // a would go on by 5e-4
+  EXPECT_DOUBLE_EQ(touch.a, 1.1e-4);
 }
 
 TEST(Touch, OfParallelStrandsStaysWhereTheirDistanceDoesNotChange) {

@@ -1,33 +1,44 @@
 #pragma once
 // The points along the thread at which a contact's impulse acts.
 
+#include <algorithm>
+
 #include "firmware/physics/members.hpp"
 #include "firmware/physics/rod/tuning.hpp"
 
 namespace ligature::physics::rod {
 
-/// The points of a pair at which its impulse acts: a and b, material coordinates, m. They follow the closest points of
-/// the two strands, found at the start of each substep, but not all the way. Where strands are almost parallel, a tiny
-/// rotation moves the closest points far, and the impulse there rotates the strands back one substep later. This
-/// delayed feedback would make the points oscillate. So a and b minimise
-///   d(a, b)^2 / 2 + lag ((a - a_before)^2 + (b - b_before)^2) / 2,   lag = Tuning::touch_lag
-/// where d is the distance of the points, and each strand is taken as straight (Tikhonov regularisation). With the
-/// cosine c of the angle between the strands, d^2 has the curvature 1 - c for a common motion of both points, and 1 + c
-/// for opposite motions. So the points go the share h / (h + lag) of the way, with h = 1 - c and 1 + c. A rotation
-/// moves the closest points in proportion to 1 / h, so the feedback is in proportion to 1 / (h + lag): bounded at any
-/// angle.
+/// The points of a pair of segments at which its impulse acts: a and b, material coordinates, m. They follow the
+/// closest points of the two segments, found at the start of each substep, but not all the way. Where strands are
+/// almost parallel, a tiny rotation moves the closest points far, and the impulse there rotates the strands back one
+/// substep later. This delayed feedback would make the points oscillate. So a and b minimise
+///   d^2 / 2 + lag (x_a^2 + x_b^2) / 2,   lag = Tuning::touch_lag
+/// d: distance between the two points, x_a and x_b: their motions along the thread (Tikhonov regularisation). The
+/// segments are taken as straight, and the closest points as inside both. With the cosine c of the angle between the
+/// segments, d^2 / 2 has the curvature h = 1 - c where both points move alike (both towards the end of the thread, or
+/// both towards its beginning), and h = 1 + c where they move oppositely. So the points go the share h / (h + lag) of
+/// the way.
+///
+/// A rotation moves the closest points in proportion to 1 / h. Let G / h be the motion of the closest points by the
+/// impulse's motion of 1. Then the points come to rest at any angle if G < 2 lag; if the strands respond after two
+/// substeps instead of one, if G < lag.
 struct Touch {
   double a = 0.0, b = 0.0;
 
-  /// Moves towards the closest points of strands with this cosine, -1 to 1.
+  /// Moves towards the closest points of segments with this cosine, -1 to 1. Neither point goes back, or beyond its
+  /// closest point, so both stay inside of their segments.
   void follow(double to_a, double to_b, double cosine) noexcept {
     const double common = share(1.0 - cosine) * ((to_a - a) + (to_b - b));
     const double opposite = share(1.0 + cosine) * ((to_a - a) - (to_b - b));
-    a += 0.5 * (common + opposite), b += 0.5 * (common - opposite);
+    a = between(a, a + 0.5 * (common + opposite), to_a);
+    b = between(b, b + 0.5 * (common - opposite), to_b);
   }
   LIGATURE_MEMBERS(Touch, a, b)
 
  private:
+  [[nodiscard]] static double between(double from, double x, double to) noexcept {
+    return std::min(std::max(x, std::min(from, to)), std::max(from, to));
+  }
   [[nodiscard]] static double share(double h) noexcept { return h / (h + tuning.touch_lag); }
 };
 
