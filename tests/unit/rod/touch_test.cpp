@@ -19,8 +19,8 @@ constexpr double kCosines[] = {-1.0, -0.999999, -0.9, -0.3, 0.0, 0.4, 0.99, 0.99
 
 // Pressing at x turns strands that cross at the origin by an angle in proportion to x. So `delay` substeps later their
 // closest points are at -gain x / h, with h = 1 - c where both points move alike, 1 + c where they move oppositely. If
-// the points followed all the way, x would be multiplied by gain / h in each substep. @return the largest of the last
-// motions of a and b that change the distance of parallel strands
+// the points followed all the way, x would be multiplied by gain / h in each substep. @return the larger of |a + b| and
+// |a - b| after 1000 substeps; for parallel strands only the one that can change
 double rest_of_ringing(double cosine, double gain, std::size_t delay) {
   const double h = 1.0 - cosine, against = 1.0 + cosine;
   std::vector<Touch> past(delay, Touch{1e-4, 0.7e-4});

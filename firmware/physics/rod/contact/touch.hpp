@@ -19,9 +19,9 @@ namespace ligature::physics::rod {
 /// both towards its beginning), and h = 1 + c where they move oppositely. So the points go the share h / (h + lag) of
 /// the way.
 ///
-/// A rotation moves the closest points in proportion to 1 / h. Let G / h be the motion of the closest points by the
-/// impulse's motion of 1. Then the points come to rest at any angle if G < 2 lag; if the strands respond after two
-/// substeps instead of one, if G < lag.
+/// A rotation moves the closest points in proportion to 1 / h. If a and b move by x, let the closest points move by
+/// -G x / h one substep later. Then a and b come to rest at any angle if G < 2 lag; if the closest points move two
+/// substeps later, if G < lag.
 struct Touch {
   double a = 0.0, b = 0.0;
 
