@@ -12,6 +12,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr const char* kGrips[] = {"wireless_verse_grip", "verse_grip"};
+constexpr const char* kListsOfGrips[] = {"wireless_verse_grip", "verse_grip", "custom_verse_grip"};
 
 const Json* member(const Json& json, const std::string& key) {
   if (!json.is_object()) return nullptr;
@@ -49,7 +50,7 @@ bool is_pressed(const Json& state, const std::string& button) {
 }
 
 /// Updates `missing`, the set of facts (such as "connected") that are false: adds a fact that the message reports as
-/// false, and removes one that it reports as true. The service sends a fact only when it changes.
+/// false, and removes one that it reports as true. A fact that a message leaves out stays as it was.
 void read_status(const Json& device, std::initializer_list<const char*> facts, std::set<std::string>& missing) {
   const Json* const status = member(device, "status");
   if (status == nullptr) return;
@@ -64,7 +65,7 @@ void read_status(const Json& device, std::initializer_list<const char*> facts, s
 }
 
 void note_grips(const Json& message, std::set<std::string>& grips) {
-  for (const char* kind : kGrips) {
+  for (const char* kind : kListsOfGrips) {
     const Json* const list = member(message, kind);
     if (list == nullptr || !list->is_array()) continue;
     for (const Json& grip : *list) {
@@ -117,9 +118,9 @@ std::optional<HaplyState> read_haply(std::string_view text, const HaplyChoice& c
 }
 
 std::string haply_command(const std::string& inverse3_id, const Vec& force_D_N, bool is_first) {
-  const Json values{{"x", force_D_N[0]}, {"y", force_D_N[1]}, {"z", force_D_N[2]}};
+  const Json vector{{"x", force_D_N[0]}, {"y", force_D_N[1]}, {"z", force_D_N[2]}};
   Json message{{"inverse3", Json::array({{{"device_id", inverse3_id},
-                                          {"commands", {{"set_cursor_force", {{"values", values}}}}}}})}};
+                                          {"commands", {{"set_cursor_force", {{"vector", vector}}}}}}})}};
   if (is_first) message["session"] = {{"configure", {{"profile", {{"name", "ligature-bridge"}}}}}};
   return message.dump();
 }

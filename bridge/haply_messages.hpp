@@ -1,5 +1,5 @@
 #pragma once
-// The JSON messages of Haply's Inverse Service, version 3 (https://docs.haply.co/inverseSDK/service): the service
+// The JSON messages of Haply's Inverse Service, 3.5 or newer (https://docs.haply.co/inverseSDK/service): the service
 // answers each message with one state, and sends one state unasked when a client connects.
 
 #include <optional>
@@ -29,8 +29,7 @@ struct HaplyState {
   std::set<std::string> grips = {};  ///< ids of all grips that were in a message
 };
 
-/// The device's state after a message of the service. Later messages contain only what has changed, so `before` keeps
-/// the rest: pass the same object for each message of a connection. @return nothing when the message is no valid JSON
+/// The device's state after a message of the service. `before` keeps what a later message leaves out: pass the same object for each message of a connection. @return nothing when the message is no valid JSON
 /// or does not contain the device.
 [[nodiscard]] std::optional<HaplyState> read_haply(std::string_view text, const HaplyChoice& choice,
                                                    HaplyState& before);

@@ -23,7 +23,7 @@ def complaint_about(message):
     for device in message.get("inverse3", []):
         if set(device) != {"device_id", "commands"} or set(device["commands"]) != {"set_cursor_force"}:
             return f"unknown command: {device}"
-        values = device["commands"]["set_cursor_force"]["values"]
+        values = device["commands"]["set_cursor_force"].get("vector", {})
         if set(values) != {"x", "y", "z"} or not all(isinstance(v, (int, float)) for v in values.values()):
             return f"no vector: {values}"
     return None
@@ -47,11 +47,11 @@ class Socket(tornado.websocket.WebSocketHandler):
             service.complaints.append(wrong or f"session in message {self.messages}")
         self.messages += 1
         time.sleep(service.late_s)  # the whole service is late, also with reading the next message
-        for device in message.get("inverse3", []):
+        for device in [] if wrong else message.get("inverse3", []):
             if device["device_id"] != service.device_id:
                 service.complaints.append(f"another device: {device['device_id']}")
                 continue
-            values = device["commands"]["set_cursor_force"]["values"]
+            values = device["commands"]["set_cursor_force"]["vector"]
             service.take_force((values["x"], values["y"], values["z"]))
             self.force = service.force
         if not service.silent:
@@ -105,17 +105,22 @@ class InverseService:
 
     def state(self):
         return {"inverse3": [{"device_id": self.device_id,
-                              "state": {"cursor_position": self.vector(self.position), "cursor_velocity": self.vector(self.velocity),
+                              "status": {"calibrated": self.calibrated, "in_use": False, "power_supply": True, "ready": True, "started": True},
+                              "state": {"mode": "idle", "cursor_position": self.vector(self.position), "cursor_velocity": self.vector(self.velocity),
                                         "current_cursor_force": self.vector(self.force)}}],
-                "wireless_verse_grip": [{"device_id": "61548", "state": {"buttons": dict(self.buttons), "hall": 0, "battery_level": 0.9,
+                "wireless_verse_grip": [{"device_id": "61548", "status": {"ready": True, "connected": True, "awake": True},
+                                         "state": {"buttons": dict(self.buttons), "hall": 0, "battery_level": 0.9,
                                                                          "orientation": {"w": 1.0, "x": 0.0, "y": 0.0, "z": 0.0}}}]}
 
     def everything(self):
         """The first message, which the service sends by itself."""
         whole = self.state()
         whole["session_id"] = 7
-        whole["inverse3"][0].update(config={"type": "inverse3", "handedness": "right"},
-                                    status={"calibrated": self.calibrated, "in_use": False, "power_supply": True, "ready": True, "started": True})
+        version = {"major_version": 3, "minor_version": 1, "id": self.device_id, "device_type": 4, "uuid": "0" * 32}
+        whole["inverse3"][0]["config"] = {
+            "type": "inverse3", "handedness": "right", "port": "COM3", "device_info": version, "extended_device_id": "0" * 32,
+            "extended_firmware_version": "0" * 32, "gravity_compensation": {"enabled": True, "scaling_factor": 0.8},
+            "torque_scaling": {"enabled": True}}
         return whole
 
     def press(self, **buttons):

@@ -57,6 +57,10 @@ TEST(HaplyMessages, OneOfSeveralGripsMustBeNamed) {
   EXPECT_EQ(read->state.buttons, 0);
   const char* const one = R"(,"wireless_verse_grip":[{"device_id":"1","state":{"buttons":{"a":true}}}])";
   EXPECT_NE(read_haply(state(one), {}, before)->problem, "") << "the other one sent nothing new";
+  HaplyState other;
+  const char* const custom = R"(,"wireless_verse_grip":[{"device_id":"1","state":{"buttons":{"a":true}}}],
+   "custom_verse_grip":[{"device_id":"8"}])";
+  EXPECT_EQ(read_haply(state(custom), {}, other)->state.buttons, 0);
   HaplyChoice choice;
   choice.grip_id = "1";
   HaplyState named;
@@ -125,7 +129,7 @@ TEST(HaplyMessages, ACommandIsOneForceForOneDevice) {
   EXPECT_FALSE(later.contains("session"));
   const auto& device = later.at("inverse3").at(0);
   EXPECT_EQ(device.at("device_id"), "04BA");
-  EXPECT_EQ(device.at("commands").at("set_cursor_force").at("values"),
+  EXPECT_EQ(device.at("commands").at("set_cursor_force").at("vector"),
             (nlohmann::json{{"x", 0.5}, {"y", -1.0}, {"z", 2.0}}));
 }
 
