@@ -202,7 +202,10 @@ void add_doctor(CLI::App& doctor, DoctorOptions& o) {
   doctor.add_option("--hours", o.hours, "the same in hours")->check(within(1e-4, 1000.0))->excludes(seconds);
   doctor.add_flag("--load", o.load,
                   "keep memory, disk, CPU and network busy meanwhile: four processes that end by themselves");
-  doctor.add_option("--scene", o.scene, "judge wake-ups by what this scene leaves, not by 100 and 300 us");
+  doctor.add_option(
+      "--scene", o.scene,
+      "judge wake-ups by what this scene leaves (default with --hours, --load, --report: a scene with all "
+      "default values; otherwise: 100 and 300 us)");
   doctor.add_option("--report", o.report, "JSON file for everything found, with wake-ups in bins of 1 us");
   doctor.add_option("--compare", o.compare, "print two reports side by side, and do nothing else")->expected(2);
   doctor.add_option("--device", o.device, "device record (TOML): also says what its drives cannot promise");

@@ -1,6 +1,7 @@
 #include "firmware/platform/machine.hpp"
 
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -67,10 +68,26 @@ Check priority_limit(const std::string& root) {
   return {Grade::kFail, "real-time priority", "up to " + amount(allowed) + ", wanted 80", kLimits};
 }
 
+bool is_kernel_from(const std::string& root, int major, int minor) {
+  int a = 0, b = 0;
+  if (std::sscanf(text_of(root + "proc/sys/kernel/osrelease").c_str(), "%d.%d", &a, &b) != 2) return false;
+  return a > major || (a == major && b >= minor);
+}
+
 /// Checks a limit of the kernel: real-time threads may use a core only for a given part of each second, and Linux stops
 /// them all for the rest of the second. With a large scene the physics uses nearly all of the time, so this limit would
-/// also stop the loop.
-Check whole_core(const std::string& root) {
+/// also stop the loop. Up to Linux 6.11 a sysctl sets the limit. From 6.12 on the "fair server" does: when threads of
+/// normal priority have waited for 0.95 s on a core, it lets them run for `runtime` ns before real-time threads.
+Check whole_core(const std::string& root, int core) {
+  const std::string server = "sys/kernel/debug/sched/fair_server/cpu" + std::to_string(core) + "/runtime";
+  const std::string runtime = text_of(root + server);
+  if (runtime == "0") return good("real-time share", "the whole core (fair server off)");
+  if (!runtime.empty())
+    return {Grade::kWarn, "real-time share", "the fair server may take " + runtime + " ns of each second, wanted 0",
+            "echo 0 > /" + server};
+  if (is_kernel_from(root, 6, 12))
+    return {Grade::kWarn, "real-time share", "not known: the fair server's setting cannot be read",
+            "run this as root, with debugfs mounted, on a kernel that is not locked down; it is /" + server};
   const std::string found = text_of(root + "proc/sys/kernel/sched_rt_runtime_us");
   if (found.empty() || found == "-1") return good("real-time share", "the whole core");
   return {Grade::kWarn, "real-time share",
@@ -211,7 +228,7 @@ std::vector<Check> check_machine(const Machine& machine, int core) {
   const std::string& root = machine.root;
   return {kernel(root),
           priority_limit(root),
-          whole_core(root),
+          whole_core(root, core),
           memory_limit(root),
           core_list(root, "own core", "sys/devices/system/cpu/isolated", "isolcpus", core),
           core_list(root, "timer ticks", "sys/devices/system/cpu/nohz_full", "nohz_full", core),

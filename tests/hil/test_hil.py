@@ -176,6 +176,10 @@ class Machine(Guest):
                     r"hardware gaps +(none above|gaps of up to) .*tracer hwlat",
                     r"OK    latest wake-up +\d+ us late, the timer's interrupt \d+ us.*(took|it interrupted \w+)"):
             self.assertRegex(rows, row)
+        self.assertRegex(rows, "OK    real-time share")
+        self.assertRegex(rows, "wake-up, this scene")
+        if (fair_server := folder / "fair_server.log").exists():  # Linux 6.12 and later
+            self.assertRegex(fair_server.read_text(), "WARN  real-time share +the fair server may take 50000000 ns")
         self.assertIn((folder / "doctor.code").read_text().strip(), ("0", "3"), "3: an emulated machine is late")
         self.assertRegex((folder / "admit.log").read_text(), r"calls to both buses .* [0-9.]+ of them in the drivers of vcan0, can0, whose delay of \d+ us")
         self.assertEqual((folder / "enforce.code").read_text().strip(), "3")

@@ -37,6 +37,29 @@ class Doctor(unittest.TestCase):
         self.assertEqual(drawn.returncode, 0, drawn.stderr)
         self.assertEqual((self.folder / "latency.png").read_bytes()[1:4], b"PNG")
 
+    def test_an_acceptance_test_judges_by_scene_drives_and_load(self):
+        found = {}
+        for device in ("omni", "epos4"):
+            report = self.folder / f"{device}.json"
+            told = run("ligature-firmware", "doctor", "--hours", 0.0003, "--load", "--scene", ROOT / "scenes/paper.toml",
+                       "--device", ROOT / f"scenes/devices/{device}.toml", "--report", report)
+            self.assertIn(told.returncode, (0, 3), told.stderr)
+            self.assertRegex(told.stdout, "wake-up, this scene +worst .* later than the scene's")
+            found[device] = json.loads(report.read_text())
+            self.assertEqual([kind.split(":")[0] for kind in found[device]["load"]], ["memory", "cpu", "disk", "network"])
+        # The bus leaves 255 us with the drives of omni.toml and 115 us with the EPOS4's, before the loop's computing.
+        self.assertLess(found["omni"]["slack_us"], 255)
+        self.assertLess(found["epos4"]["slack_us"], 115)
+        self.assertGreater(found["omni"]["slack_us"] - found["epos4"]["slack_us"], 0)
+
+    def test_without_a_scene_an_acceptance_test_takes_the_default_scene(self):
+        report = self.folder / "d.json"
+        told = run("ligature-firmware", "doctor", "--seconds", 0, "--report", report)
+        self.assertIn(told.returncode, (0, 3), told.stderr)
+        written = json.loads(report.read_text())
+        self.assertEqual(written["scene"], "default scene")
+        self.assertLess(written["slack_us"], 255)
+
     def test_a_run_that_was_ended_says_so(self):
         report = self.folder / "b.json"
         command = [BIN / "ligature-firmware", "doctor", "--seconds", "60", "--report", report]

@@ -27,6 +27,10 @@ bool has_word(const std::string& text, const std::string& word) {
   return false;
 }
 
+std::chrono::steady_clock::duration to_clock(double seconds) {
+  return std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(seconds));
+}
+
 }  // namespace
 
 std::optional<double> longest_gap_us(const std::string& trace) {
@@ -43,20 +47,23 @@ std::optional<double> longest_gap_us(const std::string& trace) {
   return longest;
 }
 
-std::string look_for_gaps(const std::string& folder, double seconds) {
+std::string look_for_gaps(const std::string& folder, double seconds, const std::atomic<bool>& stop) {
   if (!has_word(file_text(folder + "/available_tracers"), "hwlat"))
     return "not looked for: this kernel has no tracer hwlat, or the user may not read its files";
   if (!has_word(file_text(folder + "/current_tracer"), "nop")) return "not looked for: another tracer is in use";
   if (!put(folder + "/tracing_on", "1") || !put(folder + "/current_tracer", "hwlat"))
     return "not looked for: the user may not start the tracer hwlat";
-  std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+  const auto begin = std::chrono::steady_clock::now(), end = begin + to_clock(seconds);
+  while (!stop && std::chrono::steady_clock::now() < end)
+    std::this_thread::sleep_for(std::min(to_clock(0.1), end - std::chrono::steady_clock::now()));
+  const double lasted_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const auto longest = longest_gap_us(file_text(folder + "/trace"));
   put(folder + "/current_tracer", "nop");
   char text[96];
   if (!longest)
-    std::snprintf(text, sizeof text, "none above 10 us in %.0f s (tracer hwlat)", seconds);
+    std::snprintf(text, sizeof text, "none above 10 us in %.0f s (tracer hwlat)", lasted_s);
   else
-    std::snprintf(text, sizeof text, "gaps of up to %.0f us in %.0f s (tracer hwlat)", *longest, seconds);
+    std::snprintf(text, sizeof text, "gaps of up to %.0f us in %.0f s (tracer hwlat)", *longest, lasted_s);
   return text;
 }
 

@@ -2,7 +2,9 @@
 // bear), report, comparison, load.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
+#include <fstream>
 #include <thread>
 
 #include "firmware/app/doctor.hpp"
@@ -11,6 +13,7 @@
 #include "firmware/app/doctor/load.hpp"
 #include "firmware/app/doctor/report.hpp"
 #include "firmware/app/doctor/timerlat.hpp"
+#include "tests/support/temp_folder.hpp"
 
 namespace ligature::app {
 namespace {
@@ -139,7 +142,22 @@ TEST(DoctorHwlat, TheLongestGapIsFoundInTheTrace) {
   EXPECT_EQ(longest_gap_us(trace), 16.0);
   EXPECT_FALSE(longest_gap_us("# tracer: hwlat\n").has_value());
   EXPECT_FALSE(longest_gap_us("inner/outer(us): x/y").has_value());
-  EXPECT_NE(look_for_gaps("/no/such/folder", 1.0).find("not looked for"), std::string::npos);
+}
+
+TEST(DoctorHwlat, EndsWhenItIsStoppedAndSwitchesTheTracerOff) {
+  const std::atomic<bool> stop{true};
+  EXPECT_NE(look_for_gaps("/no/such/folder", 3600.0, stop).find("not looked for"), std::string::npos);
+  const std::string& folder = test::temp_folder();
+  const auto put = [&](const char* name, const char* text) { std::ofstream(folder + name) << text; };
+  put("available_tracers", "blk hwlat function nop\n");
+  put("current_tracer", "nop\n");
+  put("trace", "#1     inner/outer(us):   11/12    ts:1.5 count:6\n");
+  EXPECT_EQ(look_for_gaps(folder, 3600.0, stop), "gaps of up to 12 us in 0 s (tracer hwlat)");
+  std::string left;
+  std::ifstream(folder + "current_tracer") >> left;
+  EXPECT_EQ(left, "nop");
+  put("current_tracer", "function\n");
+  EXPECT_NE(look_for_gaps(folder, 3600.0, stop).find("another tracer"), std::string::npos);
 }
 
 /// The trace of Debian's rtla 6.1 in the guest, shortened; in it, a thread and an interrupt were added to one wake-up.

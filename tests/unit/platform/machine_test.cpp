@@ -90,6 +90,24 @@ TEST_F(MachineTest, EachFlawIsFoundInItsRowWithARemedy) {
   }
 }
 
+// From Linux 6.12 on the sysctl no longer limits real-time threads. The fair server of each core does.
+TEST_F(MachineTest, TheFairServerOfTheCoreDecides) {
+  const auto share = [&](const char* kernel) {
+    put("proc/sys/kernel/osrelease", kernel);
+    return grade(check_machine(machine, 3), "real-time share");
+  };
+  put_good_machine();
+  for (const char* old : {"6.1.0-rt", "6.11.9", "5.10.0"}) EXPECT_EQ(share(old), Grade::kOk) << old;
+  for (const char* present : {"6.12.57-rt", "6.18.44", "7.0"}) EXPECT_EQ(share(present), Grade::kWarn) << present;
+  put("sys/kernel/debug/sched/fair_server/cpu0/runtime", "0");  // another core
+  EXPECT_EQ(share("6.12.57"), Grade::kWarn);
+  put("sys/kernel/debug/sched/fair_server/cpu3/runtime", "50000000");
+  EXPECT_EQ(share("6.12.57"), Grade::kWarn);
+  put("sys/kernel/debug/sched/fair_server/cpu3/runtime", "0");
+  put("proc/sys/kernel/sched_rt_runtime_us", "950000");
+  EXPECT_EQ(share("6.12.57"), Grade::kOk);
+}
+
 TEST_F(MachineTest, CapabilitiesStandInForLimits) {
   put("proc/self/status", "Name:\tx\nCapEff:\t0000000000804000");
   const auto checks = check_machine(machine, 0);
