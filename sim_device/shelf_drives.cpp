@@ -7,6 +7,7 @@
 #include "protocol/can/remote.hpp"
 #include "sim_device/moteus_node.hpp"
 #include "sim_device/odrive_node.hpp"
+#include "sim_device/power_stage.hpp"
 #include "sim_device/profile_node.hpp"
 
 namespace ligature::sim {
@@ -66,6 +67,7 @@ class Odrive final : public BusNode {
   bool has_fault() const noexcept override { return node_.has_error(); }
   DriveStats stats() const noexcept override { return {.watchdog_trips = node_.watchdog_trips}; }
   int trial_periods() const noexcept override { return 3 * profile_.watchdog_ms + 20 * profile_.heartbeat_ms; }
+  void fail() noexcept { node_.fail(); }
 
  private:
   static constexpr std::uint32_t kEstimates = 0x09, kTorque = 0x0E;
@@ -128,10 +130,11 @@ class Moteus final : public BusNode {
   bool has_fault() const noexcept override { return node_.has_fault() || node_.mode() == kTimeoutMode; }
   DriveStats stats() const noexcept override { return {.watchdog_trips = node_.watchdog_trips}; }
   int trial_periods() const noexcept override { return 300; }
+  void fail() noexcept { node_.fail(kOfMotorDriver); }
 
  private:
   static constexpr std::uint32_t kReplies = 0x8000, kButtonsId = 0x400;
-  static constexpr int kPositionMode = 10, kTimeoutMode = 11;
+  static constexpr int kPositionMode = 10, kTimeoutMode = 11, kOfMotorDriver = 33;
 
   void look(Time now, const Sensed& sensed) noexcept {
     looked_ = now;
@@ -146,6 +149,11 @@ class Moteus final : public BusNode {
 };
 
 }  // namespace
+
+void fail_power_stage(BusNode& drive) {
+  if (auto* moteus = dynamic_cast<Moteus*>(&drive)) return moteus->fail();
+  dynamic_cast<Odrive&>(drive).fail();
+}
 
 BusNodes drives_of(const device::Device& device, const DriveConstants& constants, Time now) {
   BusNodes drives;
