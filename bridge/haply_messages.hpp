@@ -29,8 +29,9 @@ struct HaplyState {
   std::set<std::string> grips = {};  ///< ids of all grips that were in a message
 };
 
-/// The device's state after a message of the service. `before` keeps what a later message leaves out: pass the same object for each message of a connection. @return nothing when the message is no valid JSON
-/// or does not contain the device.
+/// The device's state after a message of the service. `before` keeps what a later message leaves out: pass the same
+/// object for each message of a connection. @return nothing when the message is no valid JSON or does not contain the
+/// device.
 [[nodiscard]] std::optional<HaplyState> read_haply(std::string_view text, const HaplyChoice& choice,
                                                    HaplyState& before);
 

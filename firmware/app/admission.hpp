@@ -25,11 +25,14 @@ struct Admission {
   rt::BusTime bus;
   DriverTime driver{};  ///< its calls are in loop.calls_us
   [[nodiscard]] double computing_us() const noexcept { return loop.control_us + loop.calls_us; }
-  /// Time allowed for the loop's computing: the budget, but no more than bus traffic and drivers leave.
-  [[nodiscard]] double budget_us() const noexcept {
-    const double bus_leaves_us = 1e-3 * static_cast<double>(bus.most_work().count()) - driver.delays_us();
-    return std::max(0.0, std::min(10.0 * budget_percent, bus_leaves_us));
+  /// What bus traffic and drivers leave of a period for the loop's computing.
+  [[nodiscard]] double left_us() const noexcept {
+    return 1e-3 * static_cast<double>(bus.most_work().count()) - driver.delays_us();
   }
+  /// Time allowed for the loop's computing: the budget, but no more than is left.
+  [[nodiscard]] double budget_us() const noexcept { return std::max(0.0, std::min(10.0 * budget_percent, left_us())); }
+  /// How late the loop may wake up and still get its torques to the drives before the next SYNC.
+  [[nodiscard]] double slack_us() const noexcept { return left_us() - computing_us(); }
   /// Whether the loop's work (control law, record, bus calls) fits the budget. The physics needs no check: it stops at
   /// its deadline and cannot delay the loop.
   [[nodiscard]] bool fits() const noexcept { return computing_us() <= budget_us(); }

@@ -144,7 +144,8 @@ Exit: 0 admitted, 2 bad usage or bad scene, 3 the loop is too slow, or --no-loss
 
 constexpr const char* kDoctorHelp =
     R"(One row a check, with the command that mends what is wrong; then the loop's wake-ups without its work. Run it as
-the user that will run the rig, with the machine loaded as it will be.
+the user that will run the rig, with the machine loaded as it will be; and once as root, who alone can read some
+settings and start the kernel's tracers.
 
 With --hours, --load or --report it is an acceptance test: it also sends empty frames (identifier 0x7C1) on the CAN
 interfaces and times their echo. As root it looks for gaps that the machine's own firmware makes (tracer hwlat), and in

@@ -60,13 +60,13 @@ struct AdmitOptions {
 };
 
 struct DoctorOptions {
-  std::string device;  ///< device record whose drives are judged; empty: none
+  std::string device;                     ///< device record whose drives are judged; empty: none
   int watchdog_ms = kDefaultWatchdog_ms;  ///< the one that `run` will have
   double seconds = 10.0;
   double hours = 0.0;                ///< instead of `seconds`, when above 0
   std::vector<std::string> can;      ///< CAN interfaces to check
   bool load = false;                 ///< keep the machine busy while measuring
-  std::string scene;                 ///< judge by what this scene leaves; empty: fixed bounds
+  std::string scene;                 ///< judge by what it leaves; empty: default scene or fixed bounds (doctor.cpp)
   std::string report;                ///< file for the report; empty: none
   std::vector<std::string> compare;  ///< two reports to print side by side, and nothing else
 

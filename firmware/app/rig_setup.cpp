@@ -104,11 +104,9 @@ std::variant<Plan, Refusal> make_plan(const RunOptions& options) {
                           ": the drives have no watchdog that is known to remove the torque if this program dies; "
                           "allowed only with --accept-no-drive-watchdog and an emergency stop in reach "
                           "(docs/drives.md)"};
-  std::variant<std::string, scene::Error> text = std::string("[suture]\n");
-  if (!options.scene.empty()) text = scene::read_text(options.scene, scene::kMostScene_bytes);
+  const auto text = scene::read_text(options.scene, scene::kMostScene_bytes);
   if (const auto* error = std::get_if<scene::Error>(&text)) return Refusal{2, error->text};
-  auto plan = plan_of(options.scene.empty() ? kDefaultScene : options.scene, std::get<std::string>(text),
-                      launch_overrides(options), device);
+  auto plan = plan_of(options.scene, std::get<std::string>(text), launch_overrides(options), device);
   if (std::holds_alternative<Refusal>(plan)) return plan;
   if (is_same_bus(options.left, options.right))
     return Refusal{2, "--left, --right: found '" + options.left + "' for both, allowed a bus for each hand"};

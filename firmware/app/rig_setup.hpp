@@ -28,9 +28,6 @@ struct Plan {
   device::Device device;
   std::string toml;  ///< the scene's text with the overrides as comments, stored in recordings
 };
-/// Name of the scene in which every key has its default value: one of the paper's models.
-inline constexpr const char* kDefaultScene = "default scene";
-/// @param options  without a scene: the default scene
 [[nodiscard]] std::variant<Plan, Refusal> make_plan(const RunOptions& options);
 /// As make_plan(), for a scene whose text was already read from `file`. Callers that load a scene during a run use only
 /// the text of a Refusal, not its exit code.

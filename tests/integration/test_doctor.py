@@ -50,7 +50,11 @@ class Doctor(unittest.TestCase):
         # The bus leaves 255 us with the drives of omni.toml and 115 us with the EPOS4's, before the loop's computing.
         self.assertLess(found["omni"]["slack_us"], 255)
         self.assertLess(found["epos4"]["slack_us"], 115)
-        self.assertGreater(found["omni"]["slack_us"] - found["epos4"]["slack_us"], 0)
+
+    def test_an_interface_that_is_not_there_fails_the_test(self):
+        told = run("ligature-firmware", "doctor", "--seconds", 0, "--can", "nosuchcan", "--report", self.folder / "e.json")
+        self.assertEqual(told.returncode, 3, told.stderr)
+        self.assertRegex(told.stdout, "FAIL  CAN drivers' time +--can nosuchcan")
 
     def test_without_a_scene_an_acceptance_test_takes_the_default_scene(self):
         report = self.folder / "d.json"

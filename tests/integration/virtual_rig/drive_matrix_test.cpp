@@ -7,6 +7,7 @@
 
 #include <cstdio>
 #include <fstream>
+#include <regex>
 #include <sstream>
 
 #include "firmware/control/engagement.hpp"
@@ -51,7 +52,7 @@ struct Row {
   [[nodiscard]] int silence_at_least() const { return watchdog_ms() - fed_every() / 2 - 1; }
   [[nodiscard]] int silence_at_most() const { return watchdog_ms(); }
   /// The next request samples the button, at once here. The gain takes 50 ticks to fall, and a force of 3.3 N that is
-  /// left then at most 14 more (Controller::kMostOvertimeTicks). The last torque acts until the next SYNC (1).
+  /// left then at most 14 more (see Controller::kMostOvertimeTicks). The last torque acts until the next SYNC (1).
   static constexpr int kRelease = control::Engagement::kFallTicks + 14 + 1;
   /// The fault comes with the next samples, or, if those have all come before it, a period later; ODrives tell it by
   /// their next heartbeat. The stop acts in the next period.
@@ -164,10 +165,14 @@ TEST_P(DriveMatrix, TorqueEndsAsTheRecordSays) {
   }
   EXPECT_EQ(damping_Nm > 0.0, row.device().moteus) << "a drive that damps does so while the hands move";
   std::puts(text().c_str());
-  if (test::seed_shift() != 0) return;  // the page shows results without a seed shift
   std::ostringstream page;
   page << std::ifstream(std::string(LIGATURE_SOURCE_DIR) + "/docs/drives.md").rdbuf();
-  EXPECT_NE(page.str().find(text() + "\n"), std::string::npos) << "docs/drives.md is old; its row is\n" << text();
+  // What was seen depends on the draw, and a little on the compiler; the rest of the row does not
+  const std::regex seen("; seen [0-9]+( to [0-9]+)?");
+  const auto without = [&](const std::string& t) { return std::regex_replace(t, seen, ""); };
+  EXPECT_NE(without(page.str()).find(without(text()) + "\n"), std::string::npos)
+      << "docs/drives.md is old; its row is\n"
+      << text();
 }
 
 INSTANTIATE_TEST_SUITE_P(Records, DriveMatrix, testing::Range(std::size_t{0}, std::size(kRows)),

@@ -82,6 +82,8 @@ TEST(Admission, CountsTheDriversOfTheInterfaces) {
   EXPECT_GT(with.computing_us(), 5000.0);
   EXPECT_TRUE(local.fits());
   EXPECT_FALSE(with.fits());
+  EXPECT_DOUBLE_EQ(with.left_us(), 1e-3 * static_cast<double>(with.bus.most_work().count()) - 60.0);
+  EXPECT_DOUBLE_EQ(with.slack_us(), with.left_us() - with.loop.control_us - with.loop.calls_us);
   EXPECT_NE(table(with).find("5000.0 of them in the drivers of can0, whose delay of 30 us counts twice"),
             std::string::npos)
       << table(with);

@@ -55,7 +55,9 @@ def shell(text, folder):
 
 def tutorials(folder):
     (folder / "scenes").symlink_to(SOURCE / "scenes")
-    blocks = BLOCK.findall((SOURCE / "docs/tutorials.md").read_text())
+    page = (SOURCE / "docs/tutorials.md").read_text()
+    blocks = BLOCK.findall(page)
+    assert page.count("```") == len(re.findall("^```", page, re.M)), "a block of docs/tutorials.md begins within a line"
     ran = 0
     for (kind, text), (next_kind, said) in zip(blocks, blocks[1:] + [("", "")]):
         if kind == "text":
