@@ -1,6 +1,7 @@
 #pragma once
 // The experiments of the lab. Each writes a table, a picture and a verdict to a folder.
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -13,6 +14,7 @@ struct Bench {
   std::filesystem::path scenes;  ///< folder with paper.toml, desk.toml and operators/
   std::filesystem::path out;     ///< created before the experiment starts
   bool quick = false;            ///< the smallest set of runs that tests each claim, without pictures: for ctest
+  std::uint64_t seed = 1;        ///< of what an experiment draws at random
 };
 
 // One function per experiment. @return kDone, or kRunFailed when one of the experiment's claims does not hold.

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/lab/rig/port_bound.hpp"
 #include "host/lab/rig/virtual_rig.hpp"
 #include "protocol/device/device_file.hpp"
 #include "protocol/scene/scene_file.hpp"
 #include "sim_device/unrest.hpp"
 #include "tests/integration/virtual_rig/scenes.hpp"
+#include "tests/support/random.hpp"
 
 namespace ligature {
 namespace {
@@ -47,7 +49,12 @@ class Pulling final : public sim::Intention {
 };
 
 struct Outcome {
-  double lowest_J = 0.0, peak_N = 0.0;
+  double lowest_J = 0.0;  ///< lowest account
+  /// Of the bounds of docs/passivity.md, which also hold while frames are lost: smallest difference of their two sides;
+  /// lowest true work (with what the other hand lent) of the hand for which it is lowest, and its bound at that time
+  double margin_J = 0.0, work_J = 0.0, bound_J = 0.0;
+  double beyond_J = 0.0;  ///< largest ceiling of the term "beyond"
+  double peak_N = 0.0;
   double step_N = 0.0;    ///< largest step of force, except for faults and hands that are let go
   double let_go_N = 0.0;  ///< largest step by which passivity lets a hand go (to zero)
   /// Share of the pulling time in which both hands feel at least four fifths of the coupling's force.
@@ -89,9 +96,12 @@ struct Hands {
   double frame_loss = 0.0;
 };
 
-Outcome play(const scene::Scene& scene, const Hands& hands, const device::Device& device = device::omni()) {
+/// @param seed of the frame losses
+Outcome play(const scene::Scene& scene, const Hands& hands, std::uint64_t seed = 1,
+             const device::Device& device = device::omni()) {
   lab::RigSetup setup{.scene = scene, .device = device};
   setup.frame_loss = hands.frame_loss;
+  setup.seed = seed;
   for (auto& body : setup.body) {
     body = sim::Body::of(device);
     body.hand = sim::Hand::holding(hands.tightness);
@@ -105,8 +115,19 @@ Outcome play(const scene::Scene& scene, const Hands& hands, const device::Device
       intentions[h] = std::make_unique<sim::Adversarial>(std::move(intentions[h]), hands.lead_s, 0.02);
   }
   lab::VirtualRig rig(setup, std::move(intentions));
+  std::array<lab::PortBound, 2> ports{lab::PortBound(device, 0), lab::PortBound(device, 1)};
+  rig.each_tick = [&] {
+    if (rig.records.empty()) return;
+    ports[0].look(rig.left.device, rig.records.back(), rig.controller.hand(0).received_J);
+    ports[1].look(rig.right.device, rig.records.back(), rig.controller.hand(1).received_J);
+  };
   EXPECT_EQ(rig.run(5000), std::nullopt);
-  return outcome_of(rig);
+  Outcome o = outcome_of(rig);
+  const auto& lower = ports[ports[1].lowest_work_J() < ports[0].lowest_work_J() ? 1 : 0];
+  o.margin_J = std::min(ports[0].least_margin_J(), ports[1].least_margin_J());
+  o.work_J = lower.lowest_work_J(), o.bound_J = lower.its_bound_J();
+  o.beyond_J = std::max(ports[0].most_beyond_J(), ports[1].most_beyond_J());
+  return o;
 }
 
 /// Ten times the shipped coupling stiffness: 720 N/m at the device, which renders at most 440 N/m stably.
@@ -118,8 +139,7 @@ TEST(PassivityRig, NoHandGetsEnergyOutOfAPort) {
                                {"a clenched fist", 1.0, 0.4},
                                {"a hand that jumps", 0.7, 0.5, 0.03, true},
                                {"a hand that pushes on", 0.3, 0.7, 0.03, false, 0.05},
-                               {"a hand that is braked", 0.24, 0.713, 0.032, false, 0.05},
-                               {"5 % of the frames lost", 0.5, 0.5, 0.03, false, 0.0, 0.05}};
+                               {"a hand that is braked", 0.24, 0.713, 0.032, false, 0.05}};
   for (const auto& overrides : {std::vector<std::string>{}, stiff()}) {
     for (const Hands& hands : all) {
       SCOPED_TRACE(hands.name);
@@ -130,20 +150,50 @@ TEST(PassivityRig, NoHandGetsEnergyOutOfAPort) {
       EXPECT_GE(o.lowest_J, -kFloor_J);
       EXPECT_LE(o.peak_N, 3.3);
       EXPECT_LE(o.step_N, kStep_N + kRounding_N);
-      EXPECT_LE(o.let_go_N, hands.frame_loss > 0.0 && !overrides.empty() ? o.peak_N : kStep_N);
+      EXPECT_LE(o.let_go_N, kStep_N);
+    }
+  }
+}
+
+/// While frames are lost, the floor of -1 uJ is no theorem: the lowest account of 320 runs was -900 uJ
+/// (docs/measurements/haptics.md). The bounds of docs/passivity.md are, for every draw of the losses. A hand may then
+/// be let go from any force.
+TEST(PassivityRig, LostFramesGiveNoMoreThanThePageAllows) {
+  test::Random random(63);
+  const std::vector<Hands> all{{"a calm pull and release", 0.5, 0.7},
+                               {"a loose hand", 0.0},
+                               {"a clenched fist", 1.0, 0.4},
+                               {"a hand that jumps", 0.7, 0.5, 0.03, true}};
+  for (const auto& overrides : {std::vector<std::string>{}, stiff()}) {
+    for (Hands hands : all) {
+      for (int k = 0; k < 3; ++k) {
+        hands.frame_loss = random.in(0.01, 0.1);
+        const std::uint64_t seed = random();
+        SCOPED_TRACE(testing::Message() << hands.name << ", seed " << seed);
+        const Outcome o = play(scene_with(overrides), hands, seed);
+        std::printf(
+            "%-24s %s %4.1f %% lost: account %.1e J; work %.1e J where %.1e J is allowed; beyond up to %.1e J, "
+            "margin %.1e J, fault %d\n",
+            hands.name.c_str(), overrides.empty() ? "shipped" : "stiff  ", 100.0 * hands.frame_loss, o.lowest_J,
+            o.work_J, o.bound_J, o.beyond_J, o.margin_J, o.fault);
+        EXPECT_GE(o.margin_J, 0.0);
+        EXPECT_LE(o.peak_N, 3.3);
+        EXPECT_LE(o.step_N, kStep_N + kRounding_N);
+      }
     }
   }
 }
 
 TEST(PassivityRig, ThroughLostFramesAPullIsFelt) {
+  test::Random random(64);
   const Hands hands{"", 0.5, 0.7, 0.03, false, 0.0, 0.0};
-  for (const double lost : {0.0, 0.01, 0.05}) {
+  for (const double lost : {0.0, 0.01, 0.05, 0.05, 0.05}) {
     Hands lossy = hands;
     lossy.frame_loss = lost;
-    const Outcome o = play(scene_with({}), lossy);
+    const Outcome o = play(scene_with({}), lossy, random());
     std::printf("%.2f of the frames lost: felt in %.3f of the time, lowest %.2e J\n", lost, o.felt_share, o.lowest_J);
     EXPECT_GT(o.felt_share, 0.9);
-    EXPECT_GE(o.lowest_J, -kFloor_J);
+    EXPECT_GE(o.margin_J, 0.0);
   }
 }
 
@@ -159,7 +209,7 @@ TEST(PassivityRig, WithoutTheControllerOneOfThemIsAMotor) {
 
 TEST(PassivityRig, AnotherDeviceIsAFile) {  // a Cartesian device instead of an arm, with the same CAN messages
   const auto device = std::get<device::Device>(device::load_device(kScenes + "devices/cartesian.toml"));
-  const Outcome o = play(scene_with({}), {"a calm pull and release"}, device);
+  const Outcome o = play(scene_with({}), {"a calm pull and release"}, 1, device);
   EXPECT_EQ(o.fault, 0);
   EXPECT_GT(o.peak_N, 0.01);
   EXPECT_GE(o.lowest_J, -kFloor_J);

@@ -14,6 +14,7 @@ void expect_within(const Port& port) {
   EXPECT_LE(port.bounds.above_J, kExact_J) << "the account above the work";
   EXPECT_LE(port.bounds.below_J, kExact_J) << "more given than the account had";
   EXPECT_LE(port.bounds.work_below_J, kExact_J) << "the true work";
+  EXPECT_LE(port.bounds.above_ceiling_J, kExact_J) << "the term beyond";
 }
 
 struct Case {
@@ -26,17 +27,20 @@ constexpr std::array<Case, 6> kCases{
 TEST(PassivityBounds, HoldForEveryDraw) {
   test::Random random(61);
   for (const Case& c : kCases) {
-    double lowest_J = 0.0;
+    double lowest_J = 0.0, beyond_J = 0.0;
     for (int k = 0; k < 60; ++k) {
       const Port port = Attacker::drawn(random, c.wildness, c.count_m, c.loses).run(400);
       expect_within(port);
-      lowest_J = std::min(lowest_J, port.lowest_work_J);
+      lowest_J = std::min(lowest_J, port.lowest_work_J), beyond_J = std::max(beyond_J, port.bounds.most_beyond_J);
       if (!c.loses && c.count_m == 0.0) {
         EXPECT_GE(port.lowest_work_J, -Passivity::kFloor_J);
       }
+      if (!c.loses) {
+        EXPECT_EQ(port.bounds.most_beyond_J, 0.0);
+      }
     }
-    std::printf("%.1f of the wildest hand%s%s: true work from %.2e J\n", c.wildness, c.count_m > 0.0 ? ", counts" : "",
-                c.loses ? ", losses" : "", lowest_J);
+    std::printf("%.1f of the wildest hand%s%s: true work from %.2e J, beyond up to %.2e J\n", c.wildness,
+                c.count_m > 0.0 ? ", counts" : "", c.loses ? ", losses" : "", lowest_J, beyond_J);
   }
 }
 

@@ -60,7 +60,8 @@ struct Port {
     on_its_way = f;
     if (passivity.acts()) ++acted;
     const Vec3 moved = v * kT_s + 0.5 * acceleration * kT_s * kT_s;  // exact for a constant acceleration
-    bounds.period({f, made, made.dot(moved), last_seen, passivity.is_wary(n)});
+    const bool missed = std::ranges::any_of(held, [](int ticks) { return ticks > 0; });
+    bounds.period({f, made, made.dot(moved), last_seen, passivity.is_wary(n), moved, missed});
     work_J -= made.dot(moved);
     p += moved;
     v += acceleration * kT_s;

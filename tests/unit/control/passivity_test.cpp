@@ -178,6 +178,7 @@ TEST(Passivity, LostFramesGiveNothingAwayButWhatNobodyForesaw) {
         const auto look = [&](const Port& port) {
           EXPECT_LE(port.bounds.below_J, kExact_J);
           EXPECT_LE(port.bounds.work_below_J, kExact_J);
+          EXPECT_LE(port.bounds.above_ceiling_J, kExact_J);
           work_J = std::min(work_J, port.lowest_work_J), account_J = std::min(account_J, port.lowest_J);
         };
         play_adversaries(chain, look, wildness);

@@ -5,12 +5,13 @@
 #include "host/lab/experiments/experiment.hpp"
 #include "host/lab/outcome.hpp"
 #include "ligature_source_dir.hpp"
+#include "tests/support/random.hpp"
 #include "tests/support/temp_folder.hpp"
 
 namespace ligature::lab {
 namespace {
 
-Bench quick() { return {std::string(LIGATURE_SOURCE_DIR) + "/scenes", test::temp_folder(), true}; }
+Bench quick() { return {std::string(LIGATURE_SOURCE_DIR) + "/scenes", test::temp_folder(), true, test::Random(91)()}; }
 
 TEST(Haptics, EveryClaimOfTheQuickExperimentHolds) { EXPECT_EQ(experiment_haptics(quick()), kDone); }
 TEST(Stability, EveryClaimOfTheQuickExperimentHolds) { EXPECT_EQ(experiment_stability(quick()), kDone); }

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "host/lab/rig/port_bound.hpp"
+
 namespace ligature::lab {
 namespace {
 
@@ -22,6 +24,7 @@ Watched watch(VirtualRig& rig, std::int64_t ticks, std::size_t look_at) {
   // both hands have equal encoders
   const double count_rad = 2.0 * std::numbers::pi / rig.setup.body[0].drives.counts_per_revolution;
   std::array<sim::Vec3, 2> made_Nm{sim::Vec3::Zero(), sim::Vec3::Zero()};
+  std::array<PortBound, 2> bounds{PortBound(rig.setup.device, 0), PortBound(rig.setup.device, 1)};
   std::array<sim::Mat3, 2> pose{sim::Mat3::Zero(), sim::Mat3::Zero()};  // torque-to-tip-force matrix at the SYNC before
   rig.each_tick = [&] {
     std::array<sim::Vec3, 2> force;
@@ -40,6 +43,7 @@ Watched watch(VirtualRig& rig, std::int64_t ticks, std::size_t look_at) {
       const double bound_J = port[h] + rig.controller.hand(h).received_J;
       w.lowest_bound_J[h] = std::min(w.lowest_bound_J[h], bound_J);
       w.lowest_proved_J = std::min(w.lowest_proved_J, bound_J + w.hidden_J[h]);
+      if (!rig.records.empty()) bounds[h].look(hands[h]->device, rig.records.back(), rig.controller.hand(h).received_J);
     }
     w.lowest_sum_J = std::min(w.lowest_sum_J, port[0] + port[1]);
     w.rendered_N.push_back(force);
@@ -54,6 +58,7 @@ Watched watch(VirtualRig& rig, std::int64_t ticks, std::size_t look_at) {
   };
   if (const auto why = rig.run(ticks)) throw std::runtime_error("the rig did not start: " + *why);
   rig.each_tick = nullptr;
+  w.least_margin_J = std::min(bounds[0].least_margin_J(), bounds[1].least_margin_J());
   for (const auto& r : rig.records) {
     for (std::size_t h = 0; h < 2; ++h) {
       const auto& f = r.f_device_N[h];

@@ -22,6 +22,9 @@ struct Watched {
   /// Smallest value, over both ports and all ticks, of (port energy + energy lent to this hand + hidden_J so far), J.
   /// Passivity requires this value not to be negative.
   double lowest_proved_J = 0.0;
+  /// Smallest difference of the two sides of the bounds of docs/passivity.md, of both ports (PortBound). These bounds
+  /// hold also while frames are lost; negative: one of them did not hold.
+  double least_margin_J = 0.0;
   std::array<double, 2> lowest_account_J{};  ///< the firmware's energy account, computed from encoder counts
   /// Smallest sum of the true energies of both ports; the thread transfers energy between the hands
   double lowest_sum_J = 0.0;

@@ -12,7 +12,8 @@ int experiment_haptics(const Bench& bench) {
     return apart_when_felt_m(load_scene_or_refuse((bench.scenes / "suture-3-0-knot.toml").string(), overrides),
                              kTaut_N);
   };
-  const HapticsBench b{bench.scenes, bench.out, bench.quick, taut_m({kWeightless}), taut_m({kWeightless, kPeg})};
+  const HapticsBench b{bench.scenes, bench.out, bench.quick, taut_m({kWeightless}), taut_m({kWeightless, kPeg}),
+                       bench.seed};
   Verdict v("haptics");
   std::printf(
       "haptics: walls, velocity, ports, fidelity; the firmware's own control code, simulated devices and hands\n");

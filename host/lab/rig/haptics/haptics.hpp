@@ -1,6 +1,7 @@
 #pragma once
 // The parts of the haptics experiment. Each writes its tables and adds its claims to the verdict.
 
+#include <cstdint>
 #include <filesystem>
 
 #include "host/lab/report.hpp"
@@ -16,6 +17,7 @@ struct HapticsBench {
   /// Distance of each hand from the middle at which the knotted suture pulls with kTaut_N, without and with a peg in
   /// its way.
   double taut_m = 0.0, taut_at_peg_m = 0.0;
+  std::uint64_t seed = 1;  ///< of the frame losses
 };
 
 void measure_z_width(const HapticsBench& bench, Verdict& v);

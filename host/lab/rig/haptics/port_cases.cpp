@@ -112,6 +112,7 @@ Watched play(const HapticsBench& bench, const PortCase& c, bool controller) {
   }
   for (auto& body : setup.body) body.hand = c.hand;
   setup.frame_loss = c.frame_loss;
+  setup.seed = bench.seed;
   c.trouble(setup);
   const double end_s = scene::end_time_s(c.script);
   VirtualRig rig(setup, wrapped(setup, c.script, c.wrap));

@@ -15,18 +15,23 @@ double least(const std::array<double, 2>& of) { return std::min(of[0], of[1]); }
 
 /// Extreme values over all runs with the passivity controller.
 struct Worst {
-  double account_J = 0.0, bound_J = 0.0, proved_J = 0.0, sum_J = 0.0, alone_J = 0.0, step_N = 0.0;
-  int runs = 0, let_go = 0, let_go_wild = 0;
+  // without lost frames
+  double account_J = 0.0, bound_J = 0.0, proved_J = 0.0, sum_J = 0.0, alone_J = 0.0;
+  double margin_J = 1e9, step_N = 0.0;
+  int runs = 0, lossy_runs = 0, let_go = 0, let_go_wild = 0;
 
   void add(const PortCase& c, const Watched& w) {
-    ++runs;
+    const bool lossy = c.frame_loss > 0.0;
+    ++(lossy ? lossy_runs : runs);
+    margin_J = std::min(margin_J, w.least_margin_J);
+    step_N = std::max(step_N, w.largest_step_N);
+    (c.wild || lossy ? let_go_wild : let_go) += w.let_go;
+    if (lossy) return;  // the floor of -1 uJ is then no theorem
     account_J = std::min(account_J, least(w.lowest_account_J));
     bound_J = std::min(bound_J, least(w.lowest_bound_J));
     proved_J = std::min(proved_J, w.lowest_proved_J);
     sum_J = std::min(sum_J, w.lowest_sum_J);
     if (!c.gives_way) alone_J = std::min(alone_J, least(w.lowest_port_J));
-    step_N = std::max(step_N, w.largest_step_N);
-    (c.wild || c.frame_loss > 0.0 ? let_go_wild : let_go) += w.let_go;
   }
 };
 
@@ -85,11 +90,12 @@ void measure_lossy_feel(const HapticsBench& bench, Verdict& v) {
   pull.script = pull_and_release(bench.taut_m, 2.0, 4.0);
   const Watched whole = play(bench, pull, true);
   pull.frame_loss = 0.05;
-  double least_share = 1.0, least_J = 0.0;
+  double least_share = 1.0, least_J = 0.0, margin_J = 1e9;
   const int seeds = bench.quick ? 2 : 10;
-  for (int seed = 1; seed <= seeds; ++seed) {
-    pull.trouble = [seed](RigSetup& setup) { setup.seed = static_cast<std::uint64_t>(seed); };
+  for (int k = 0; k < seeds; ++k) {
+    pull.trouble = [&](RigSetup& setup) { setup.seed = bench.seed + static_cast<std::uint64_t>(k); };
     const Watched w = play(bench, pull, true);
+    margin_J = std::min(margin_J, w.least_margin_J);
     for (std::size_t h = 0; h < 2; ++h) {
       const double enough_N = 0.8 * whole.mean_N(h, kFrom, kTo).norm();
       long felt = 0;
@@ -98,10 +104,12 @@ void measure_lossy_feel(const HapticsBench& bench, Verdict& v) {
       least_J = std::min(least_J, w.lowest_port_J[h]);
     }
   }
-  v.claim(least_share >= 0.9 && least_J >= -1e-6,
-          "Ports: time in which a pull held with 5 % of the frames lost is felt by 4/5, least energy in J",
-          digits(least_share) + " of it, " + digits(least_J) + ", " + std::to_string(seeds) + " seeds",
-          "0.9 or more, -1e-6 or more");
+  v.claim(least_share >= 0.9 && margin_J >= 0.0,
+          "Ports: time in which a pull held with 5 % of the frames lost is felt by 4/5, least energy in J, and least "
+          "margin to the bounds of docs/passivity.md, J",
+          digits(least_share) + " of it, " + digits(least_J) + ", " + digits(margin_J) + ", " + std::to_string(seeds) +
+              " seeds",
+          "0.9 or more, any, 0 or more");
 }
 
 /// A wall ten times too stiff, pushed with 0.5 N while no hand holds the device: the simplest case that is unstable
@@ -145,13 +153,17 @@ void measure_ports(const HapticsBench& bench, Verdict& v) {
     }
   }
   files.close();
-  const std::string runs = std::to_string(worst.runs) + " runs with the controller, J";
+  const std::string runs = std::to_string(worst.runs) + " runs with the controller, no frames lost, J";
   v.claim(worst.account_J >= -1e-6, "Ports: least account of " + runs, digits(worst.account_J), "-1e-6 or more");
   v.claim(worst.alone_J >= -1e-6, "Ports: least true energy of a port that nobody pulls, J", digits(worst.alone_J),
           "-1e-6 or more");
   v.claim(worst.proved_J >= -1e-6 && worst.bound_J >= -0.5e-3,
           "Ports: least true energy of any port and what the other gave it; and what its counts could hide, J",
           digits(worst.bound_J) + ", " + digits(worst.proved_J), "-0.5e-3, -1e-6 or more");
+  v.claim(worst.margin_J >= 0.0,
+          "Ports: least margin to the bounds of docs/passivity.md, also in " + std::to_string(worst.lossy_runs) +
+              " runs with lost frames, J",
+          digits(worst.margin_J), "0 or more");
   v.claim(worst.sum_J >= -1e-6, "Ports: least true energy of both ports together, J", digits(worst.sum_J),
           "-1e-6 or more");
   v.claim(worst.step_N <= device::omni().force_step_N,
