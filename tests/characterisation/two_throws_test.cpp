@@ -90,35 +90,43 @@ TEST(Hold, OfTwoThrowsIsSlackenedInTime) {
   EXPECT_LT(lost / ticks, 0.15);
 }
 
-// A substep that has a good enough solution takes no more than its fair share of the tick's budget. Mean share of time
-// lost in pulls of a surgeon's knot: 0.10 to 0.13 in 16 draws; it was 0.17 when each substep could take all that is
-// left, and 0.18 when the speed of the hands did not loosen the tolerance.
+// A substep that has a good enough solution takes no more than its fair share of the tick's budget. The mean share of
+// time lost in pulls of a surgeon's knot was 0.17 when each substep could take all that is left, and 0.18 when the
+// speed of the hands did not loosen the tolerance. In eight draws of eight pulls it was 0.119 to 0.137 (mean 0.131,
+// standard deviation 0.006). The mean of 24 pulls, with 0.0036, is above 0.155 less than once in a million draws.
 TEST(Labour, IsSharedFairly) {
+  constexpr int kPulls = 24;
   double lost = 0.0;
-  for (const double speed : speeds(8, 0.161, 0.233, 604)) {
+  for (const double speed : speeds(kPulls, 0.161, 0.233, 604)) {
     double sum = 0.0;
     int ticks = 0;
     pulled(kSurgeons, speed, kSmallBudget,
            [&](const RodSimulation& sim) { sum += sim.rod().report().time_lost, ++ticks; });
-    lost += sum / ticks / 8;
+    lost += sum / ticks / kPulls;
   }
   RecordProperty("lost", std::to_string(lost));
-  EXPECT_LT(lost, 0.145);
+  EXPECT_LT(lost, 0.155);
 }
 
 // Newton's method converges in threads of any number of nodes (36 to 235 are drawn). The overhand is pulled at speeds
 // at which no tick needs much work. With a proximal term that does not grow (contact_newton.hpp), the method cycles in
-// one tick of every tenth pull, until the tick's work is used up. Lost time is not asserted: with segments of 15 to 18
-// diameters (66 and 55 nodes) a tight loop can snap, and then the guard shortens a substep (2 of 960 pulls).
+// one tick of every tenth pull, until the tick's work is used up. No pull of 620 did so: a share of at most 0.62 % (95
+// % interval). With this share more than 7 of 120 pulls cycle less than once in a million draws; with a constant
+// proximal term the test fails in 94 of 100 draws. Lost time is not asserted: with segments of 15 to 18 diameters (66
+// and 55 nodes) a tight loop can snap, and then the guard shortens a substep (2 of 960 pulls).
 TEST(Labour, IsNeverUsedUpByCycles) {
+  constexpr int kPulls = 120, kMostCycles = 7;
+  constexpr long kLittle = 4'000'000;
   Random random(607);
   long most = 0;
-  for (int k = 0; k < 60; ++k) {
+  int cycles = 0;
+  for (int k = 0; k < kPulls; ++k) {
     const int nodes = 36 + static_cast<int>(random() % 200);
     int cut_short = 0;
+    long work = 0;  // of the pull's worst tick
     const auto look = [&](const RodSimulation& sim) {
       cut_short += sim.rod().report().cut_short;
-      most = std::max(most, sim.rod().report().work);
+      work = std::max(work, sim.rod().report().work);
     };
     Tightening pull = pulled("suture-3-0-knot.toml", 0.03 + 0.12 * random.share(),
                              {"suture.nodes=" + std::to_string(nodes), "world.grippers_collide=false"}, look);
@@ -126,19 +134,25 @@ TEST(Labour, IsNeverUsedUpByCycles) {
       pull.tick(0.0);
       look(pull.sim());
     }
-    EXPECT_EQ(cut_short, 0) << nodes;
+    cycles += cut_short > 0 || work >= kLittle;
+    most = std::max(most, work);
   }
   RecordProperty("most", std::to_string(most));
-  EXPECT_LT(most, 4'000'000);
+  RecordProperty("cycles", cycles);
+  EXPECT_LE(cycles, kMostCycles);
 }
 
 // With suture.accuracy = "fast" a tick has ten substeps, also when the budget runs out. With six substeps, square knots
 // pulled to 5 N had up to 59 guard events, were then held with only 0.02 to 3.6 N, and lost as much time. Also with
 // ten, `fast` loses time at these speeds, so some knots are held with less than 5 N; the mean force shows how well the
-// simulation followed the pulls.
+// simulation followed the pulls (4.83 to 4.90 N in nine draws of eight pulls). That the guard does nothing is no law:
+// it did nothing in each of 72 drawn pulls, so its share is at most 5.1 % (95 % interval). With this share more than 7
+// of 16 pulls have a guard event less than once in a million draws.
 TEST(Labour, LeavesTenSubsteps) {
+  constexpr int kPulls = 16, kMostGuarded = 7;
   double mean_N = 0.0;
-  for (const double speed : speeds(8, 0.15, 0.25, 605)) {
+  int guarded = 0;
+  for (const double speed : speeds(kPulls, 0.15, 0.25, 605)) {
     int guard = 0, fewest = 100;
     const auto look = [&](const RodSimulation& sim) {
       guard += sim.rod().report().guard_events;
@@ -149,13 +163,15 @@ TEST(Labour, LeavesTenSubsteps) {
       pull.tick(0.0);
       look(pull.sim());
     }
-    EXPECT_EQ(guard, 0) << speed;
+    guarded += guard > 0;
     EXPECT_EQ(fewest, 10) << speed;
-    mean_N += Tightening::force(pull.sim()) / 8;
+    mean_N += Tightening::force(pull.sim()) / kPulls;
     RecordProperty("force_" + std::to_string(speed), std::to_string(Tightening::force(pull.sim())));
   }
   RecordProperty("mean_N", std::to_string(mean_N));
+  RecordProperty("guarded", guarded);
   EXPECT_GT(mean_N, 3.5);
+  EXPECT_LE(guarded, kMostGuarded);
 }
 
 /// A surgeon's knot drawn tight by two hands and held for 0.7 s.

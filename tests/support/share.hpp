@@ -23,18 +23,31 @@ namespace ligature::test {
   return text;
 }
 
-/// An event count with its 95 % Poisson interval (within a few percent of the exact interval).
-[[nodiscard]] inline std::string rate(int events) {
-  const auto edge = [](double k, double z) {  // Wilson and Hilferty approximation of a chi-squared quantile
-    return k <= 0.0 ? 0.0 : k * std::pow(1.0 - 1.0 / (9.0 * k) + z / (3.0 * std::sqrt(k)), 3.0);
+/// The upper or lower edge of the exact 95 % interval of a Poisson distribution's mean, after this many events.
+[[nodiscard]] inline double poisson_edge(int events, bool upper) {
+  if (events == 0 && !upper) return 0.0;
+  double low = 0.0, high = events + 10.0 * std::sqrt(events + 1.0);
+  for (int i = 0; i < 60; ++i) {
+    const double mean = 0.5 * (low + high);
+    double below = 0.0;  // probability of fewer events; upper: of at most as many
+    for (int k = 0; k < events + (upper ? 1 : 0); ++k)
+      below += std::exp(k * std::log(mean) - mean - std::lgamma(k + 1));
+    (below > (upper ? 0.025 : 0.975) ? low : high) = mean;
+  }
+  return high;
+}
+
+/// Events in `hours` with their exact 95 % interval, from the number of events in `watched` hours.
+[[nodiscard]] inline std::string rate(int events, double watched = 1.0, double hours = 1.0) {
+  const auto number = [&](double count) {
+    char text[32];
+    const double scaled = count * hours / watched;
+    std::snprintf(text, sizeof text, scaled < 100.0 ? "%.2g" : "%.0f", scaled);
+    return std::string(text);
   };
-  const double high = edge(events + 1.0, 1.96);
-  char text[64];
-  if (events == 0)
-    std::snprintf(text, sizeof text, "0 (.. 3.7)");
-  else
-    std::snprintf(text, sizeof text, "%d (%.1f .. %.1f)", events, edge(events, -1.96), high);
-  return text;
+  const std::string high = number(poisson_edge(events, true));
+  if (events == 0) return "0 (.. " + high + ")";
+  return number(events) + " (" + number(poisson_edge(events, false)) + " .. " + high + ")";
 }
 
 }  // namespace ligature::test

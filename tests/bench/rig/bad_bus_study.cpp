@@ -1,9 +1,12 @@
-// Random runs with lost or corrupted CAN frames: the fault that ends each run, and the time until no motor has torque.
-// Usage: bad_bus_study [runs per row = 300] [first seed = 1]; prints the tables of docs/measurements/fault-matrix.md.
+// Random runs with lost or corrupted CAN frames, or a wrong encoder: the fault that ends each run, the time until no
+// motor has torque, and the true force. Prints the tables of docs/measurements/fault-matrix.md.
+// Usage: bad_bus_study [runs per row = 300] [first seed = 1] [encoders | lost | wrong]; default: all three tables
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
+#include <string_view>
 #include <vector>
 
 #include "tests/integration/virtual_rig/bad_bus.hpp"
@@ -55,7 +58,9 @@ void lost(int draws, std::uint64_t seed) {
       "| frames lost, %% | hands | no fault, %% | fault 17, %% | fault 11, %% | others, %% | median | worst | true "
       "force, N |\n"
       "|---|---|---|---|---|---|---|---|---|\n");
-  for (int percent = 0; percent <= 100; percent += 5) {
+  std::vector<int> shares{0, 1};
+  for (int percent = 5; percent <= 100; percent += 5) shares.push_back(percent);
+  for (const int percent : shares) {
     for (const bool both : {false, true}) {
       const std::int64_t ticks = percent < 15 ? 1000 : percent < 25 ? 2200 : 300;
       const Tally t = tally({.lost = 0.01 * percent, .left = true, .right = both, .ticks = ticks}, draws, seed);
@@ -85,12 +90,49 @@ void wrong(int draws, std::uint64_t seed) {
   }
 }
 
+void encoders(int draws, std::uint64_t seed) {
+  std::printf(
+      "| encoder | axis | no fault, %% | fault 22, %% | fault 23, %% | others, %% | true force, N | true step, N |\n"
+      "|---|---|---|---|---|---|---|---|\n");
+  struct Row {
+    const char *what, *axis;
+    WrongEncoder encoder;
+  };
+  std::vector<Row> rows{{"all are right", "-", {}}};
+  constexpr std::array kAxes{"waist", "shoulder", "forearm"};
+  const std::vector<std::pair<const char*, WrongEncoder>> kinds{
+      {"stands still", {scene::FaultKind::kFreeze}},
+      {"counts backwards", {scene::FaultKind::kReverse}},
+      {"is off by 30 counts, 1.5 mm", {scene::FaultKind::kJump, 0, 30}}};
+  for (auto [what, encoder] : kinds)
+    for (encoder.node = 1; encoder.node <= 3; ++encoder.node)
+      rows.push_back({what, kAxes[static_cast<std::size_t>(encoder.node - 1)], encoder});
+  for (const Row& row : rows) {
+    Tally t;
+    double step_N = 0.0;
+    for (; t.draws < draws; ++t.draws) {
+      const WrongEncoderEnd end = end_of(row.encoder, seed + 1000 * static_cast<std::uint64_t>(t.draws));
+      ++t.faults[end.fault];
+      t.peak_N = std::max(t.peak_N, end.peak_N), step_N = std::max(step_N, end.step_N);
+    }
+    std::printf("| %s | %s | %s | %s | %s | %s | %.2f | %.2f |\n", row.what, row.axis,
+                test::share(t.faults[0], draws).c_str(), test::share(t.faults[22], draws).c_str(),
+                test::share(t.faults[23], draws).c_str(), test::share(others(t, {0, 22, 23}), draws).c_str(), t.peak_N,
+                step_N);
+    std::fflush(stdout);
+    seed += 1'000'003;
+  }
+  std::printf("\n");
+}
+
 }  // namespace
 }  // namespace ligature
 
 int main(int argc, char** argv) {
   const int draws = argc > 1 ? std::max(1, std::atoi(argv[1])) : 300;
   const auto seed = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1ULL;
-  ligature::lost(draws, seed);
-  ligature::wrong(draws, seed + 500'000'009ULL);
+  const std::string_view table = argc > 3 ? argv[3] : "all";
+  if (table == "all" || table == "encoders") ligature::encoders(draws, seed + 700'000'001ULL);
+  if (table == "all" || table == "lost") ligature::lost(draws, seed);
+  if (table == "all" || table == "wrong") ligature::wrong(draws, seed + 500'000'009ULL);
 }

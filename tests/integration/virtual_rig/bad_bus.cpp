@@ -51,6 +51,31 @@ BadBusEnd end_of(const BadBus& bus, std::uint64_t seed) {
   return end;
 }
 
+WrongEncoderEnd end_of(const WrongEncoder& encoder, std::uint64_t seed) {
+  constexpr std::size_t kFrom = 1000;  // both hands pull
+  test::Random random(seed);
+  AttackPlan plan = AttackPlan::pulls(random());
+  plan.jumps = false;  // jumps of 3 cm would cause velocity faults
+  scene::FaultScript script;
+  script.kind = encoder.kind;
+  script.node = encoder.node;
+  script.counts = encoder.counts;
+  script.from_s = random.in(1.1, 1.6);
+  if (encoder.node > 0) plan.faults[0] = script;
+  AttackedRig attacked(plan);
+  if (const auto why = attacked.run()) throw std::runtime_error(*why);
+
+  WrongEncoderEnd end;
+  for (const auto& r : attacked.rig.records)
+    if (end.fault == 0) end.fault = r.fault;
+  const auto& tips = attacked.rig.truth[0].tips();
+  for (std::size_t i = kFrom; i < tips.size(); ++i) {
+    end.peak_N = std::max(end.peak_N, tips[i].f_N.norm());
+    if (!tips[i].f_N.isZero(0.0)) end.step_N = std::max(end.step_N, tips[i].step_N);
+  }
+  return end;
+}
+
 std::int64_t ticks_to_zero_at(double frames_lost) {
   constexpr std::int64_t kWay =
       25;  // time until the torque is off: the next SYNC, or the drive's watchdog if it receives nothing

@@ -17,7 +17,7 @@
 #include "ligature_source_dir.hpp"
 #include "protocol/scene/fault_script.hpp"
 #include "sim_device/page/steered_hand.hpp"
-#include "tests/integration/virtual_rig/attack.hpp"
+#include "tests/integration/virtual_rig/bad_bus.hpp"
 #include "tests/integration/virtual_rig/scenes.hpp"
 #include "tests/integration/virtual_rig/simulated_rig.hpp"
 #include "tests/support/random.hpp"
@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr std::int64_t kOnset = 1500, kTicks = 2200;
-const std::string kByChance = "\n## A bad bus";
+const std::string kByChance = "\n## Wrong encoders at hands that pull";
 
 /// Whether torques were sent in this tick. Records of lost periods repeat the last values, but nothing was sent.
 bool pushes(const rt::TickRecord& r) {
@@ -85,9 +85,9 @@ Case of_script(const fs::path& file) {
   return {file.stem().string(), s.title, s, false, Nanoseconds(0), s.expected_fault, s.within_ticks};
 }
 
-/// Whether the fault and its time depend on a random draw. A single draw would not be representative, so such a case
-/// has no row in the table.
-bool is_by_chance(const Case& c) { return c.script && c.script->share < 1.0 && c.fault != 0; }
+/// Whether what happens depends on a random draw. A single draw would not be representative, so such a case has no row
+/// in the table.
+bool is_by_chance(const Case& c) { return c.script && c.script->share < 1.0; }
 
 std::vector<Case> scripts() {
   std::vector<Case> cases;
@@ -211,10 +211,13 @@ const std::string kHead =
     R"(# Fault matrix
 
 This page shows what the rig does when something fails: which fault follows, and after how many ticks all torque is
-gone. The test `FaultMatrix.EveryCaseEndsAsItSays` prints the page, and fails if the page is old. In virtual time, two
-simulated hands tie an overhand and feel force. 1.5 s after the first SYNC one script of `scenes/faults` disturbs one
-hand. A second test, `FaultMatrix.HandsThatAPageMovesEndTheSame`, repeats all rows with two hands that the browser page
-moves.
+gone. The test `FaultMatrix.EveryCaseEndsAsItSays` prints the text and the table up to [the second
+table](#wrong-encoders-at-hands-that-pull), and fails if they are old. The other tables are printed by the program
+`bad_bus_study`; no test compares them with the page.
+
+In virtual time, two simulated hands tie an overhand and feel force. 1.5 s after the first SYNC one script of
+`scenes/faults` disturbs one hand. A second test, `FaultMatrix.HandsThatAPageMovesEndTheSame`, repeats all rows with two
+hands that the browser page moves.
 
 Each row of the table is one disturbance. *Stated* is the largest number of ticks of 1 ms that the test allows from the
 disturbance until no motor of either hand has torque; *seen* is the measured number. In a row with "none, carries on"
@@ -226,82 +229,21 @@ the rig goes on without a fault, with the last samples that it has. In all rows:
 - Every tick is recorded.
 - A fault stays until it is reset, disarms the rig, and removes the force of both hands.
 - While the controller is asleep or cut off from the bus, the drives' own watchdog (20 ms) removes the torque. These
-  drives are our simulated ones. A moteus drive does not let go after its watchdog as it is delivered: it damps the
-  motion, or does what else is stored in it ([drives](../drives.md#moteus)).
+  drives are our simulated ones. With other drives this promise is another: those with a heartbeat watchdog need 40 ms,
+  a drive without a watchdog keeps its last torque, and a moteus damps the motion or does what else is stored in it
+  ([the times for each device record](../drives.md#what-was-tested)).
 
 An encoder that stops or counts backwards is detected if it does so while the hand moves. At a hand at rest it is not
 detected at once; [the second table](#wrong-encoders-at-hands-that-pull) shows what such a hand feels. The row
 `corrupt-all` is a worst case: a real CAN controller drops frames with wrong bits, so that they only count as lost. The
-scripts `lose-50` and `corrupt-1` are not in this table, because their end depends on random numbers. [A bad
-bus](#a-bad-bus) shows such disturbances with 300 runs in each row.
+scripts `lose-1`, `lose-10`, `lose-50`, `reorder` and `corrupt-1` are not in this table, because what happens depends on
+random numbers. `FaultMatrix.WhatEndsByChanceEndsAsItSaysInEveryDraw` draws each of them 12 times: `lose-50` and
+`corrupt-1` must end in a fault, the others must carry on. [A bad bus](#a-bad-bus) has tables of such disturbances, with
+300 runs in each row.
 
 | script | what happens | fault | stated | seen |
 |---|---|---|---|---|
 )";
-
-/// A wrong encoder of the left hand from 1.0 s on, while both hands pull with the largest force that the rig allows.
-struct Lie {
-  scene::FaultKind kind;
-  const char* title;
-  int counts = 0;
-};
-struct True {
-  int runs = 0, found = 0;
-  double peak_N = 0.0, step_N = 0.0;
-};
-
-True lied_to(const Lie& lie, int node) {
-  True worst;
-  for (std::uint64_t seed = 1; seed <= 6; ++seed, ++worst.runs) {
-    AttackPlan plan = AttackPlan::pulls(seed);
-    scene::FaultScript& fault = plan.faults[0].emplace();
-    fault.kind = lie.kind;
-    fault.node = node;
-    fault.from_s = 1.0 + 0.1 * static_cast<double>(seed);
-    fault.counts = lie.counts;
-    AttackedRig attacked(plan);
-    EXPECT_EQ(attacked.run(), std::nullopt);
-    const auto& tips = attacked.rig.truth[0].tips();
-    for (std::size_t i = 1000; i < tips.size(); ++i) {
-      worst.peak_N = std::max(worst.peak_N, tips[i].f_N.norm());
-      if (!tips[i].f_N.isZero(0.0)) worst.step_N = std::max(worst.step_N, tips[i].step_N);
-    }
-    worst.found += std::ranges::any_of(attacked.rig.records, [](const auto& r) { return r.fault != 0; });
-  }
-  return worst;
-}
-
-std::string lies() {
-  std::string table =
-      R"(
-## Wrong encoders at hands that pull
-
-This table is for encoders that become wrong while both hands pull at a thread ten times as stiff as the shipped one.
-The test `FaultMatrix.EveryCaseEndsAsItSays` makes six runs for each row. One encoder of the left hand becomes wrong 1.1
-to 1.6 s after the start. *True force* and *true step* are the largest values of the six runs at the tip, computed from
-the torques that the motors made and the true pose of the arm; at most 3.4 N and 0.55 N are allowed. The step to zero of
-a fault is not counted.
-
-| encoder | axis | runs that end in a fault | true force, N | true step, N |
-|---|---|---|---|---|
-)";
-  constexpr std::array kLies{Lie{scene::FaultKind::kFreeze, "stands still"},
-                             Lie{scene::FaultKind::kReverse, "counts backwards"},
-                             Lie{scene::FaultKind::kJump, "is off by 30 counts, 1.5 mm", 30}};
-  constexpr std::array kAxes{"waist", "shoulder", "forearm"};
-  for (const Lie& lie : kLies) {
-    for (int node = 1; node <= 3; ++node) {
-      const True t = lied_to(lie, node);
-      EXPECT_LE(t.peak_N, 3.4) << lie.title << node;
-      EXPECT_LE(t.step_N, 0.55) << lie.title << node;
-      std::array<char, 128> row{};
-      std::snprintf(row.data(), row.size(), "| %s | %s | %d of %d | %.1f | %.1f |\n", lie.title,
-                    kAxes[static_cast<std::size_t>(node - 1)], t.found, t.runs, t.peak_N, t.step_N);
-      table += row.data();
-    }
-  }
-  return table;
-}
 
 TEST(FaultMatrix, EveryCaseEndsAsItSays) {
   const auto scene = std::get<scene::Scene>(scene::load_scene(kScenes + "paper.toml"));
@@ -318,10 +260,9 @@ TEST(FaultMatrix, EveryCaseEndsAsItSays) {
                 static_cast<long long>(o.ticks_to_fault), static_cast<long long>(o.ticks_to_zero), o.peak_N);
     table += row(c, o);
   }
-  table += lies();
   const std::string page = std::string(LIGATURE_SOURCE_DIR) + "/docs/measurements/fault-matrix.md",
                     before = text_of(page);
-  // The page from this heading on is written by bad_bus_study.
+  // The tables of the page from this heading on are printed by bad_bus_study.
   const std::size_t by_chance = std::min(before.find(kByChance), before.size());
   if (std::getenv("LIGATURE_WRITE_DOCS") != nullptr) std::ofstream(page) << table << before.substr(by_chance);
   if (test::seed_shift() != 0) return;  // the page shows results without a seed shift
@@ -342,8 +283,11 @@ TEST(FaultMatrix, HandsThatAPageMovesEndTheSame) {
   }
 }
 
-/// Cases that depend on a random draw: every draw must end in a fault, and no force may follow it.
-TEST(FaultMatrix, WhatEndsByChanceAlwaysEndsInAFault) {
+/// Draws of each case that depends on chance. Half of the frames lost, or wrong bits, must end in a fault, and no force
+/// may follow it. With 1 % of the frames lost, or frames in another order, there is no fault. With 10 % lost, fault 17
+/// comes once in an hour (docs/architecture.md): three of 12 runs of 1.2 s have it less than once in 10 million tests.
+TEST(FaultMatrix, WhatEndsByChanceEndsAsItSaysInEveryDraw) {
+  constexpr int kDraws = 12, kMostAlarms = 2;
   const auto scene = std::get<scene::Scene>(scene::load_scene(kScenes + "paper.toml"));
   const auto hands = std::get<scene::GripperScript>(scene::load_gripper_script(kScenes + "operators/overhand.csv"));
   test::Random random(50);
@@ -351,7 +295,8 @@ TEST(FaultMatrix, WhatEndsByChanceAlwaysEndsInAFault) {
   for (Case c : scripts()) {
     if (!is_by_chance(c)) continue;
     ++found;
-    for (int k = 0; k < 20; ++k) {
+    int alarms = 0;
+    for (int k = 0; k < kDraws; ++k) {
       c.script->seed = static_cast<int>(random.any(1, 1'000'000'000));
       SCOPED_TRACE(testing::Message() << c.name << ", seed " << c.script->seed);
       SimulatedRig rig(scene, hands);
@@ -359,15 +304,37 @@ TEST(FaultMatrix, WhatEndsByChanceAlwaysEndsInAFault) {
       ASSERT_EQ(rig.run(kTicks + 500), std::nullopt);
       const Outcome o = outcome_of(rig, kOnset);
       EXPECT_TRUE(o.pushed_before);
-      EXPECT_NE(o.fault, 0);
-      if (c.script->kind == scene::FaultKind::kLose) {
+      EXPECT_LE(o.peak_N, 3.4);
+      if (o.fault != 0 && c.script->kind == scene::FaultKind::kLose) {
         EXPECT_TRUE(o.fault == 17 || o.fault == 11) << o.fault;
       }
+      alarms += o.fault != 0;
+      if (c.fault == 0) continue;
+      EXPECT_NE(o.fault, 0);
       EXPECT_LE(o.ticks_to_zero, c.within_ticks);
-      EXPECT_LE(o.peak_N, 3.4);
+    }
+    if (c.fault == 0) {
+      EXPECT_LE(alarms, c.name == "lose-10" ? kMostAlarms : 0) << c.name;
     }
   }
-  EXPECT_EQ(found, 2U);
+  EXPECT_EQ(found, 5U);
+}
+
+/// bad_bus_study counts how such runs end. The force of the torques is within its limits in every one of them.
+TEST(FaultMatrix, AWrongEncoderLeavesTheForceWithinItsLimits) {
+  test::Random random(51);
+  using scene::FaultKind;
+  for (const WrongEncoder& kind :
+       {WrongEncoder{FaultKind::kFreeze}, {FaultKind::kReverse}, {FaultKind::kJump, 0, 30}}) {
+    for (int k = 0; k < 6; ++k) {
+      WrongEncoder encoder = kind;
+      encoder.node = 1 + k % 3;
+      const std::uint64_t seed = random();
+      const WrongEncoderEnd end = end_of(encoder, seed);
+      EXPECT_LE(end.peak_N, 3.4) << static_cast<int>(kind.kind) << ", axis " << encoder.node << ", seed " << seed;
+      EXPECT_LE(end.step_N, 0.55) << static_cast<int>(kind.kind) << ", axis " << encoder.node << ", seed " << seed;
+    }
+  }
 }
 
 /// When the controller stalls, the drives' own watchdogs end the torque: none stays on for longer than their timeout.
