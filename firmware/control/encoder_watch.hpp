@@ -22,7 +22,8 @@ namespace ligature::control {
 /// the other joints have travelled kTravel. A gap between samples restarts this test.
 ///
 /// Frozen at rest. The reading has not changed by a count, although the joint's torque has varied by kPushed of the
-/// rated torque and the other joints have travelled kElsewhere. No hand is that stiff.
+/// rated torque and the other joints have travelled kElsewhere. Only a clenched hand that pulls hard is that stiff
+/// (docs/measurements/fault-matrix.md).
 ///
 /// Near its stops a joint may really stand still, so it is not tested there. A reversal at rest is found only by a
 /// guided move (move_check.hpp), or because the pose becomes impossible. O(kWindow), no allocation.
