@@ -11,23 +11,26 @@ let previews = new Map(); // of the offered scenes, by name
 const changes = []; // of parameters, made in this page: {key, name, from, to, isTold: the
 // firmware has offered `to`}; the last one can be undone
 
-export function setUpChange(link) {
+/** @param signal ends the listeners. */
+export function setUpChange(link, signal) {
+  $('parameters').replaceChildren(); // of a panel that has failed
+
   const toggle = (on) => { showPanel('change', on); };
-  $('change-open').addEventListener('click', () => toggle($('change').hidden));
-  $('change-close').addEventListener('click', () => toggle(false));
+  $('change-open').addEventListener('click', () => toggle($('change').hidden), { signal });
+  $('change-close').addEventListener('click', () => toggle(false), { signal });
   const ask = async (what, words) => {
     const answer = await link.request(what);
     toast(`${words}: ${answer.accepted ? answer.text : `refused – ${answer.text}`}`, !answer.accepted);
     return answer.accepted;
   };
-  $('scenes').addEventListener('change', () => showPreview(previews.get($('scenes').value)));
+  $('scenes').addEventListener('change', () => showPreview(previews.get($('scenes').value)), { signal });
   $('load-scene').addEventListener('click', async () => {
     $('load-scene').disabled = true;
     const nodes = $('nodes').value.trim();
     const changes = ($('model').value && ` suture.model=${$('model').value}`) + (nodes && ` suture.nodes=${nodes}`);
     await ask({ command: 'load-scene', text: $('scenes').value + changes }, 'load scene');
     $('load-scene').disabled = false;
-  });
+  }, { signal });
   $('undo').addEventListener('click', async () => {
     const last = changes.at(-1);
     $('undo').disabled = true;
@@ -35,7 +38,7 @@ export function setUpChange(link) {
     if (await ask({ command: 'set', text: last.key, value: last.from }, `${last.name}, undone`)) changes.splice(changes.indexOf(last), 1);
     asked.delete(last.key);
     showUndo();
-  });
+  }, { signal });
   setUpChange.ask = ask;
 }
 

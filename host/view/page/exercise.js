@@ -56,19 +56,19 @@ export class Attempt {
 }
 
 export class Exercise {
-  constructor(panels) {
+  /** @param signal ends the listeners. */
+  constructor(panels, signal) {
     this.panels = panels;
     this.attempt = null;
     this.count = 0;
     $('target').replaceChildren(...TARGETS.map(({ name }, i) => new Option(name, i)));
-    this.ending = new AbortController();
-    const { signal } = this.ending, toggle = (on) => showPanel('exercise', on);
+    const toggle = (on) => showPanel('exercise', on);
     $('exercise-open').addEventListener('click', () => toggle($('exercise').hidden), { signal });
     $('exercise-close').addEventListener('click', () => toggle(false), { signal });
     $('exercise-begin').addEventListener('click', () => this.begin(), { signal });
   }
 
-  dispose() { this.ending.abort(); $('exercise').hidden = true; }
+  dispose() { $('exercise').hidden = true; }
 
   begin() {
     const { tick } = this.panels.latest.now ?? {};

@@ -11,7 +11,8 @@ const HAND_CSS = ['#56b4e9', '#e69f00'], DRAW_MS = 40, AXES = 'xyz';
 const SIDES = { front: { right: 0, up: 2, near: 1, sign: -1 }, side: { right: 1, up: 2, near: 0, sign: 1 }, top: { right: 0, up: 1, near: 2, sign: 1 } };
 
 export class FlatView {
-  constructor(host, choice) {
+  /** @param signal aborted when the picture is no longer wanted. */
+  constructor(host, choice, onLost, signal) {
     this.choice = choice;
     this.canvas = Object.assign(document.createElement('canvas'), { id: 'flat', className: 'picture', hidden: true });
     this.context = this.canvas.getContext('2d');
@@ -22,10 +23,10 @@ export class FlatView {
     this.due = 0;
     this.panes = []; // where each picture is drawn and how it maps to the world; as in scene.js
     host.prepend(this.canvas);
+    signal.addEventListener('abort', () => this.canvas.remove());
   }
 
   show(on) { this.canvas.hidden = !on; }
-  dispose() { this.canvas.remove(); }
   setForce(maxForce_N) { this.maxForce_N = maxForce_N || this.maxForce_N; }
   setFacts(facts) { this.facts = facts ?? NO_FACTS; this.isDirty = true; }
   setStereo() {} // stereo needs depth
@@ -91,11 +92,11 @@ export class FlatView {
     this.metresPerPixel = 1 / scale;
     this.panes = [];
     this.sides.forEach((name, i) => this.#pane(name, { x: isWide ? i * w : 0, y: isWide ? 0 : i * h, w, h }, box, scale));
-    c.fillStyle = '#c9d2de'; // labels on both sides of the line between the two pictures
+    c.fillStyle = '#c9d2de'; // labels on both sides of the line between the two pictures, where the page shows no text over them
     c.font = '12px sans-serif';
     this.sides.forEach((name, i) => {
-      c.textAlign = i || !isWide ? 'left' : 'right';
-      c.fillText(`${name}: ${AXES[SIDES[name].right]} →, ${AXES[SIDES[name].up]} ↑`, isWide ? w + (i ? 10 : -10) : 14, isWide ? h - 10 : h + (i ? 18 : -10));
+      c.textAlign = i && isWide ? 'left' : 'right';
+      c.fillText(`${name}: ${AXES[SIDES[name].right]} →, ${AXES[SIDES[name].up]} ↑`, isWide ? w + (i ? 10 : -10) : w - 14, isWide ? h - 10 : h + (i ? 18 : -10));
     });
   }
 

@@ -16,18 +16,18 @@ export class HandControl {
   /**
    * @param latest newest data from the host. @param panels its `picture` is the view that draws the thread. @param run
    * calls a function; errors are attributed to this part of the page. @param fail tells that this part has failed.
+   * @param signal ends the worker and the listeners, also if this constructor throws.
    */
-  constructor({ link, latest, panels, run, fail }) {
+  constructor({ link, latest, panels, run, fail, signal }) {
     Object.assign(this, { link, latest, panels, mine: {}, pace: FIRST_PACE, axes: null });
     this.worker = new Worker('./hand_worker.js', { type: 'module' });
+    signal.addEventListener('abort', () => this.worker.terminate());
     this.worker.onmessage = ({ data }) => run((it) => it.hear(data));
     this.worker.onerror = (event) => fail(new Error(event.message || 'hand_worker.js did not load'));
     this.keys = new HandKeys({ jaws: (side) => this.jaws(side), pace: (step) => this.setPace(step), letGo: () => this.letGo(), changed: () => run((it) => it.step()) });
     this.pads = new HandPads();
     this.mouse = new HandMouse(document.getElementById('scene'), { panes: () => this.panes, handAt: (side) => this.seenAt(side),
       move: (side, by_W) => this.worker.postMessage({ move: { side, by_W } }), jaws: (side) => this.jaws(side), changed: () => run((it) => it.step()) });
-    this.ending = new AbortController();
-    const { signal } = this.ending;
     addEventListener('keydown', (event) => { if (event.code === 'KeyM' && !isTyping(event) && !document.querySelector('dialog[open]')) this.toggle(); }, { signal });
     addEventListener('blur', () => this.letGo(), { signal });
     addEventListener('pagehide', () => this.letGo(), { signal });
@@ -40,9 +40,7 @@ export class HandControl {
 
   dispose() {
     clearInterval(this.timer);
-    this.ending.abort();
     this.end();
-    this.worker.terminate();
     this.keys.dispose();
     this.mouse.dispose();
   }

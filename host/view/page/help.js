@@ -4,14 +4,15 @@ import { isTyping } from './controls.js';
 const SEEN = 'ligature-help-seen';
 
 export class Help {
-  constructor() {
+  /** @param signal ends the listeners. */
+  constructor(signal) {
     this.box = document.getElementById('help');
-    document.getElementById('help-open').addEventListener('click', () => this.open());
-    this.box.addEventListener('close', () => keep(SEEN));
+    document.getElementById('help-open').addEventListener('click', () => this.open(), { signal });
+    this.box.addEventListener('close', () => keep(SEEN), { signal });
     addEventListener('keydown', (event) => {
       if (event.key === '?' && !isTyping(event)) this.open();
       if (event.key === 'Escape') for (const open of document.querySelectorAll('dialog[open]')) open.close('cancel');
-    });
+    }, { signal });
     if (!isKept(SEEN)) this.open();
   }
 

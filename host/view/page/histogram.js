@@ -6,18 +6,20 @@ import { three } from './numbers.js';
 const BOUNDS_us = [2, 5, 10, 20, 50, 100, 200, 500, 1000];
 
 export class Histogram {
-  /** @param redraw callback that requests a redraw, because resizing clears the canvas. */
-  constructor(host, redraw) {
+  /**
+   * @param redraw callback that requests a redraw, because resizing clears the canvas. @param signal aborted when the
+   * histogram is no longer wanted.
+   */
+  constructor(host, redraw, signal) {
     this.box = Object.assign(document.createElement('div'), { className: 'plot histogram' });
     this.box.innerHTML = '<h2>wake-up latency <em>µs, log count</em></h2>';
     this.canvas = document.createElement('canvas');
     this.box.append(this.canvas);
     host.append(this.box);
-    this.resizes = new ResizeObserver(redraw);
-    this.resizes.observe(this.box);
+    const resizes = new ResizeObserver(redraw);
+    resizes.observe(this.box);
+    signal.addEventListener('abort', () => { resizes.disconnect(); this.box.remove(); });
   }
-
-  dispose() { this.resizes.disconnect(); this.box.remove(); }
 
   draw(store, from, period_s) {
     fitTo(this.canvas, this.box);

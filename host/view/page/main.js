@@ -93,7 +93,7 @@ async function loadPanels(tries) {
     attempt('panels', () => { throw error; });
     const note = document.querySelector('#scene .part-note') ?? $('scene').appendChild(document.createElement('p'));
     note.className = 'part-note';
-    note.textContent = `Pictures did not load: ${error.message}. Next try in ${RETRY_MS / 1000} s. State and STOP work.`;
+    note.textContent = `Pictures did not load: ${error.message}${tries ? '. Reload the page if this stays' : ''}. Next try in ${RETRY_MS / 1000} s. State and STOP work.`;
     setTimeout(loadPanels, RETRY_MS, tries + 1);
   }
 }

@@ -18,7 +18,9 @@ export class Panels {
     for (const [key, what] of Object.entries(allParts(this))) this.parts[key] = new Part(what);
     for (const part of Object.values(this.parts)) part.start(this.told);
     Object.defineProperties(page, { scene: { get: () => this.picture }, traces: { get: () => this.parts.traces.value } });
-    requestAnimationFrame((time) => this.draw(time));
+    // Asks for the next picture first, so that an exception in draw() does not end drawing for good.
+    const next = (time) => { requestAnimationFrame(next); this.draw(time); };
+    requestAnimationFrame(next);
   }
 
   /** The part that draws the thread now (3-D or flat), or null. */
@@ -55,7 +57,6 @@ export class Panels {
   }
 
   draw(time) {
-    requestAnimationFrame((next) => this.draw(next));
     const isNew = this.isNew;
     this.isNew = false;
     for (const part of Object.values(this.parts)) {

@@ -4,8 +4,8 @@ import { listRecordings } from './recordings_list.js';
 
 const $ = (id) => document.getElementById(id);
 
-/** Sets up the button, which starts a recording with name and notes, and ends it. */
-export function setUpRecording(link) {
+/** Sets up the button, which starts a recording with name and notes, and ends it. @param signal ends the listeners. */
+export function setUpRecording(link, signal) {
   const say = (answer, what) => toast(`${what}: ${answer.accepted ? answer.text : `refused – ${answer.text}`}`, !answer.accepted);
   $('record').addEventListener('click', async () => {
     if ($('record').dataset.on === 'true') return say(await link.request({ record: 'stop' }), 'recorded');
@@ -14,11 +14,11 @@ export function setUpRecording(link) {
     $('record-dialog').show(); // not modal: STOP stays usable
     $('record-name').focus();
     listRecordings(link);
-  });
+  }, { signal });
   $('record-dialog').addEventListener('close', async () => {
     if ($('record-dialog').returnValue !== 'start') return;
     say(await link.request({ record: 'start', name: $('record-name').value, notes: $('record-notes').value }), 'recording');
-  });
+  }, { signal });
 }
 
 export function showRecording({ on, file, why }) {

@@ -10,20 +10,23 @@ const KIND = { state: 1, fault: 2, grasp: 3, release: 4, limit: 5, change: 6, kn
 const TINT = { [KIND.fault]: '#ff5c47', [KIND.grasp]: '#2fbf8f', [KIND.release]: '#9aa6b6', [KIND.knot]: '#cc79a7', [KIND.change]: '#f0e442' };
 
 export class ReplayBar {
-  constructor(link) {
+  /** @param signal ends the listeners. */
+  constructor(link, signal) {
     this.link = link;
     this.state = { position_s: 0, duration_s: 0, playing: false, speed: 1 };
     this.marks = [];
-    for (const speed of SPEEDS) $('speed').add(new Option(`${speed}×`, speed, speed === 1, speed === 1));
-    $('play').addEventListener('click', () => this.toggle());
-    $('speed').addEventListener('change', () => link.send({ speed: Number($('speed').value) }));
-    $('scrub').addEventListener('input', () => { this.scrubbed = performance.now(); this.seek(Number($('scrub').value)); });
-    $('previous').addEventListener('click', () => this.jump(-1));
-    $('next').addEventListener('click', () => this.jump(1));
-    for (const id of ['compare', 'align']) $(id).addEventListener('change', () => this.#compare());
-    $('open').addEventListener('change', () => this.#open());
-    addEventListener('keydown', (event) => this.#key(event), { capture: true });
-    new ResizeObserver(() => this.#drawOverview()).observe($('overview'));
+    $('speed').replaceChildren(...SPEEDS.map((speed) => new Option(`${speed}×`, speed, speed === 1, speed === 1)));
+    $('play').addEventListener('click', () => this.toggle(), { signal });
+    $('speed').addEventListener('change', () => link.send({ speed: Number($('speed').value) }), { signal });
+    $('scrub').addEventListener('input', () => { this.scrubbed = performance.now(); this.seek(Number($('scrub').value)); }, { signal });
+    $('previous').addEventListener('click', () => this.jump(-1), { signal });
+    $('next').addEventListener('click', () => this.jump(1), { signal });
+    for (const id of ['compare', 'align']) $(id).addEventListener('change', () => this.#compare(), { signal });
+    $('open').addEventListener('change', () => this.#open(), { signal });
+    addEventListener('keydown', (event) => this.#key(event), { capture: true, signal });
+    const resizes = new ResizeObserver(() => this.#drawOverview());
+    resizes.observe($('overview'));
+    signal.addEventListener('abort', () => resizes.disconnect());
   }
 
   get isOn() { return !$('replay').hidden; }

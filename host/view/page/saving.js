@@ -8,11 +8,12 @@ const FILM_EVERY_MS = 50, KEPT_MS = 60_000;
 const FILM_KINDS = ['video/webm;codecs=vp9', 'video/webm;codecs=vp8', 'video/webm', 'video/mp4'];
 
 export class Saving {
-  constructor(panels) {
+  /** @param signal ends the listeners. */
+  constructor(panels, signal) {
     this.panels = panels;
     const acts = { picture: () => this.#picture(), film: () => this.startFilm(), csv: () => this.#csv() };
-    $('save').addEventListener('change', () => { const act = acts[$('save').value]; $('save').value = ''; act?.(); });
-    $('film-end').addEventListener('click', () => this.endFilm());
+    $('save').addEventListener('change', () => { const act = acts[$('save').value]; $('save').value = ''; act?.(); }, { signal });
+    $('film-end').addEventListener('click', () => this.endFilm(), { signal });
   }
 
   dispose() { this.film?.recorder.stop(); $('film-end').hidden = true; }

@@ -14,14 +14,16 @@ const VIEWS = { front: [0, -1, 0.12], side: [1, 0, 0.12], top: [0, -0.02, 1], is
 export class Scene {
   /**
    * @param choice {colour, follow, stereo, view} of the user. @param onLost called when the browser withdraws WebGL.
+   * @param signal aborted when the picture is no longer wanted, also if this constructor throws.
    */
-  constructor(host, choice, onLost) {
+  constructor(host, choice, onLost, signal) {
     this.choice = choice;
     this.canvas = Object.assign(document.createElement('canvas'), { id: 'canvas', className: 'picture', hidden: true });
     const context = this.canvas.getContext('webgl2', { antialias: true, powerPreference: 'high-performance' });
     if (!context) throw new Error('no WebGL in this browser, drawn flat');
+    this.canvas.addEventListener('webglcontextlost', () => onLost('the browser took WebGL away, drawn flat'), { signal });
+    signal.addEventListener('abort', () => this.#release(context));
     this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, context });
-    this.canvas.addEventListener('webglcontextlost', () => onLost('the browser took WebGL away, drawn flat'));
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = THREE.PCFShadowMap;
@@ -38,6 +40,7 @@ export class Scene {
     this.controls.addEventListener('change', () => { this.isDirty = true; });
     this.#addLight();
     this.#addSurroundings();
+    if (choice.quality) this.#lower(choice.quality); // of a view before this one, which was too slow
     this.tube = new Tube(this.scene);
     this.hands = [0, 1].map((i) => new Hand(this.scene, i));
     this.facts = NO_FACTS;
@@ -52,12 +55,14 @@ export class Scene {
 
   show(on) { this.canvas.hidden = !on; }
 
-  dispose() {
+  /** Gives the context back at once. A browser has only a few, and takes the oldest away when there are too many. */
+  #release(context) {
     this.canvas.remove();
-    this.throws.show(null);
-    this.resizes.disconnect();
-    this.controls.dispose();
-    this.renderer.dispose();
+    document.getElementById('throws').replaceChildren();
+    if (!context.isContextLost()) context.getExtension('WEBGL_lose_context')?.loseContext();
+    this.resizes?.disconnect();
+    this.controls?.dispose();
+    this.renderer?.dispose();
   }
 
   #addLight() {
@@ -280,10 +285,14 @@ export class Scene {
     const step = Math.min(time - (this.lastTime ?? time), 1000);
     this.lastTime = time;
     this.pace = 0.9 * (this.pace ?? 16) + 0.1 * step;
-    if (this.pace < 66 || this.quality === QUALITIES.length - 1 || document.hidden) return;
-    this.quality = (this.quality ?? 0) + 1;
+    if (this.pace < 66 || this.choice.quality === QUALITIES.length - 1 || document.hidden) return;
+    this.#lower((this.choice.quality ?? 0) + 1);
+  }
+
+  #lower(quality) {
+    this.choice.quality = quality;
     this.pace = 16;
-    const { ratio, shadow } = QUALITIES[this.quality];
+    const { ratio, shadow } = QUALITIES[quality];
     this.renderer.setPixelRatio(ratio);
     this.sun.shadow.mapSize.set(shadow, shadow);
     this.sun.shadow.map?.dispose();

@@ -1,23 +1,25 @@
 // Buttons, keys and legend of the picture, for both the 3-D and the flat view.
 import { SCALE_CSS } from './colouring.js';
-import { isTyping } from './controls.js';
+import { isTyping, toast } from './controls.js';
 import { roundLength } from './round_length.js';
 
 const $ = (id) => document.getElementById(id);
 
 export class SceneTools {
-  constructor(panels) {
+  /** @param signal ends the listeners. */
+  constructor(panels, signal) {
     const { choice } = panels;
     const pictures = (use) => { for (const key of ['scene', 'flat']) panels.parts[key].run(use); panels.isNew = true; };
     const view = (name) => { choice.view = name; pictures((p) => p.view(name)); };
-    for (const button of document.querySelectorAll('[data-view]')) button.addEventListener('click', () => view(button.dataset.view));
-    $('follow').addEventListener('change', () => { choice.follow = $('follow').checked; pictures(() => {}); });
-    $('colour').addEventListener('change', () => { choice.colour = $('colour').value; pictures(() => {}); });
-    $('stereo').addEventListener('change', () => { choice.stereo = $('stereo').value; pictures((p) => p.setStereo(choice.stereo)); });
-    $('tools-open').addEventListener('click', () => $('tools-open').setAttribute('aria-expanded', $('tools').classList.toggle('is-open')));
+    for (const button of document.querySelectorAll('[data-view]')) button.addEventListener('click', () => view(button.dataset.view), { signal });
+    $('follow').addEventListener('change', () => { choice.follow = $('follow').checked; pictures(() => {}); }, { signal });
+    $('colour').addEventListener('change', () => { choice.colour = $('colour').value; pictures(() => {}); }, { signal });
+    const refused = (error) => toast(`stereo: ${error.message}`, true); // its file is loaded only when it is chosen
+    $('stereo').addEventListener('change', () => { choice.stereo = $('stereo').value; pictures((p) => p.setStereo(choice.stereo)?.catch(refused)); }, { signal });
+    $('tools-open').addEventListener('click', () => $('tools-open').setAttribute('aria-expanded', $('tools').classList.toggle('is-open')), { signal });
     const keys = { 1: () => view('front'), 2: () => view('side'), 3: () => view('top'), 4: () => view('iso'), f: () => view('fit'),
       k: () => $('follow').click(), c: () => { if (!panels.latest.isReplay) $('change-open').click(); } };
-    addEventListener('keydown', (event) => { if (!isTyping(event) && !document.querySelector('dialog[open]')) keys[event.key.toLowerCase()]?.(); });
+    addEventListener('keydown', (event) => { if (!isTyping(event) && !document.querySelector('dialog[open]')) keys[event.key.toLowerCase()]?.(); }, { signal });
   }
 
   /** Shows a scale bar of a round length, 40 to 100 pixels long. */

@@ -7,7 +7,8 @@ const $ = (id) => document.getElementById(id);
 export const WINDOWS_S = [1, 5, 10, 30, 60, 300, 600, 'run'];
 
 export class TraceTools {
-  constructor(panels) {
+  /** @param signal ends the listeners. */
+  constructor(panels, signal) {
     this.panels = panels;
     const traces = (use) => { panels.parts.traces.run(use); panels.hurryTraces(); };
     this.traces = traces;
@@ -17,11 +18,11 @@ export class TraceTools {
       return button;
     }));
     this.setWindow(panels.choice.window_s);
-    $('pause').addEventListener('click', () => this.togglePause());
-    $('components').addEventListener('change', () => { panels.choice.components = $('components').checked; traces((t) => t.showComponents(panels.choice.components)); });
-    $('third').addEventListener('change', () => { panels.choice.third = $('third').value; traces((t) => t.showThird(panels.choice.third)); });
+    $('pause').addEventListener('click', () => this.togglePause(), { signal });
+    $('components').addEventListener('change', () => { panels.choice.components = $('components').checked; traces((t) => t.showComponents(panels.choice.components)); }, { signal });
+    $('third').addEventListener('change', () => { panels.choice.third = $('third').value; traces((t) => t.showThird(panels.choice.third)); }, { signal });
     const keys = { p: () => this.togglePause(), '+': () => this.#step(1), '-': () => this.#step(-1) };
-    addEventListener('keydown', (event) => { if (!isTyping(event) && !document.querySelector('dialog[open]')) keys[event.key.toLowerCase()]?.(); });
+    addEventListener('keydown', (event) => { if (!isTyping(event) && !document.querySelector('dialog[open]')) keys[event.key.toLowerCase()]?.(); }, { signal });
   }
 
   setWindow(seconds) {

@@ -3,7 +3,7 @@ import uPlot from './uPlot.esm.js';
 import { C } from './frame.js';
 import { stateName } from './names.js';
 import { axisLabels, describeTime, labelRoom } from './times.js';
-import { wholeRun } from './whole_run.js';
+import { BESIDE, wholeRun } from './whole_run.js';
 
 /**
  * Choices for the third plot: two columns, their names and SI unit, the factor to the displayed unit, and the smallest
@@ -25,7 +25,6 @@ export const THIRD = {
   contacts: { names: ['in action'], si: '', columns: [C.contacts, C.contacts], factor: 1, unit: 'number in action', least: 4 },
 };
 const FORCES = [C.left, C.leftX, C.leftY, C.leftZ, C.right, C.rightX, C.rightY, C.rightZ];
-export const BESIDE = 14; // index of the other recording's first column in the data
 const FAR = 1e8; // gaps above 1e8 m are not drawn: 1e9 m means that nothing is near
 const FLAG = { lost: 1, missed: 2, limited: [16, 32], full: 64 };
 const AXIS = { x: '#ff9d7a', y: '#7fd1ae', z: '#b9a5ff' };
@@ -35,31 +34,27 @@ export class Traces {
   /**
    * Offers the choices of THIRD in the page's list. @param beside trace store of the second recording.
    * @param choice {window_s, third, components}. @param onCursor called with the row under the cursor, or null.
+   * @param signal aborted when the traces are no longer wanted, also if this constructor throws.
    */
-  constructor(host, store, beside, choice, onCursor) {
+  constructor(host, store, beside, choice, onCursor, signal) {
     const { window_s, third } = choice;
     Object.assign(this, { host, store, onCursor, window_s, period_s: 1e-3, limit_N: null, end: null, third: { title: third, ...THIRD[third] } });
     this.forceRange = [0, 0.1];
     this.position_s = null; // where the recording is, on a plot of all of it
     this.beside = { store: beside, offset_ticks: null, name: '' };
     this.plots = [];
-    try {
-      this.plots.push(this.#plot('left force', 'N', [0, 1, 2, 3], '#56b4e9', 0));
-      this.plots.push(this.#plot('right force', 'N', [4, 5, 6, 7], '#e69f00', 1));
-      this.plots.push(this.#plot(third, this.third.unit, [8, 9], '#e8ecf2', null));
-      this.showComponents(choice.components);
-      this.resizes = new ResizeObserver(() => this.resize());
-      this.resizes.observe(host);
-      this.resize();
-    } catch (error) { this.dispose(); throw error; }
+    this.signal = signal;
+    this.plots.push(this.#plot('left force', 'N', [0, 1, 2, 3], '#56b4e9', 0));
+    this.plots.push(this.#plot('right force', 'N', [4, 5, 6, 7], '#e69f00', 1));
+    this.plots.push(this.#plot(third, this.third.unit, [8, 9], '#e8ecf2', null));
+    this.showComponents(choice.components);
+    const resizes = new ResizeObserver(() => this.resize());
+    signal.addEventListener('abort', () => resizes.disconnect());
+    resizes.observe(host);
+    this.resize();
     const list = document.getElementById('third');
     list.replaceChildren(...Object.keys(THIRD).map((name) => new Option(name, name)));
     list.value = third;
-  }
-
-  dispose() {
-    this.resizes?.disconnect();
-    for (const { plot, box } of this.plots) { plot.destroy(); box.remove(); }
   }
 
   #box(title, unit) {
@@ -67,6 +62,7 @@ export class Traces {
     box.className = 'plot';
     box.innerHTML = `<h2>${title} <em>${unit}</em></h2>`;
     this.host.append(box);
+    this.signal.addEventListener('abort', () => box.remove());
     return box;
   }
 
@@ -88,6 +84,7 @@ export class Traces {
         setCursor: [(u) => { if (u === this.pointed) this.#readCursor(u); }],
       },
     }, series.map(() => [0]), box);
+    this.signal.addEventListener('abort', () => plot.destroy());
     plot.over.addEventListener('pointerenter', () => { this.pointed = plot; });
     plot.over.addEventListener('pointerleave', () => { this.pointed = null; this.onCursor(null); });
     return { plot, columns, hand, box, title };

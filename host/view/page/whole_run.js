@@ -1,6 +1,7 @@
 // Data of the traces for the whole of a recording, from its overview (topic 'marks'): the largest force of each hand in
 // each of its parts. The other traces have no overview.
-import { BESIDE } from './traces.js';
+
+export const BESIDE = 14; // index of the other recording's first column in the data
 
 /**
  * @param now_s time of the displayed tick, at position_s of the recording.
