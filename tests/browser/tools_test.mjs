@@ -194,10 +194,11 @@ const steps = {
   'a camera that was placed while the picture had no size sees the thread': async () => {
     if (webgl === 'off') return;
     const distance = await page.evaluate(async () => {
-      const { Scene } = await import('./scene.js'), scene = new Scene(document.getElementById('scene'), { ...ligature.panels.choice, follow: false }, () => {});
+      const { Scene } = await import('./scene.js'), ending = new AbortController();
+      const scene = new Scene(document.getElementById('scene'), { ...ligature.panels.choice, follow: false }, () => {}, ending.signal);
       scene.update(ligature.latest.shape, ligature.latest.now, ligature.latest.knot); // its canvas is still hidden
       const far = scene.camera.position.distanceTo(scene.controls.target);
-      scene.dispose();
+      ending.abort();
       return far;
     });
     assert.ok(distance > 0.1 && distance < 100, `${distance} m`);
