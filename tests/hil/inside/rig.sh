@@ -12,7 +12,6 @@ hands_priority=85
 # As on a rig (docs/deployment.md). By default Linux stops real-time processes for 5 % of each second; from 6.12 on its
 # fair server does so.
 echo -1 > /proc/sys/kernel/sched_rt_runtime_us
-mount -t debugfs debugfs /sys/kernel/debug
 fair_server=/sys/kernel/debug/sched/fair_server/cpu
 for runtime in "$fair_server"*/runtime; do [ ! -e "$runtime" ] || echo 0 > "$runtime"; done
 
