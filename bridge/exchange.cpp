@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <ctime>
+#include <utility>
 
 #include "sim_device/event_loop.hpp"
 
@@ -27,13 +28,14 @@ Exchange::~Exchange() {
 
 void Exchange::set_force(const Vec& force_D_N, Nanoseconds now) {
   const std::scoped_lock lock(mutex_);
+  if (force_ != force_D_N && !waits_since_) waits_since_ = now;
   force_ = force_D_N;
   force_at_ = now;
 }
 
-Vec Exchange::force_now(Nanoseconds now) const {
+Exchange::Outgoing Exchange::take_force(Nanoseconds now) {
   const std::scoped_lock lock(mutex_);
-  return now - force_at_ <= owner_within_ ? force_ : Vec{};
+  return {now - force_at_ <= owner_within_ ? force_ : Vec{}, std::exchange(waits_since_, std::nullopt)};
 }
 
 std::optional<Heard> Exchange::newest() const {
@@ -51,6 +53,20 @@ Nanoseconds Exchange::longest_exchange() const {
   return longest_;
 }
 
+ForceWaits Exchange::force_waits() const {
+  const std::scoped_lock lock(mutex_);
+  return waits_;
+}
+
+/// Counts an exchange in which the device answered.
+void Exchange::count(Nanoseconds begin, Nanoseconds end, std::optional<Nanoseconds> waited_since) noexcept {
+  longest_ = std::max(longest_, end - begin);
+  if (!waited_since) return;
+  ++waits_.forces;
+  waits_.sum += end - *waited_since;
+  waits_.worst = std::max(waits_.worst, end - *waited_since);
+}
+
 void Exchange::clear_event() const noexcept {
   eventfd_t count = 0;
   (void)eventfd_read(event_, &count);
@@ -60,13 +76,14 @@ void Exchange::live(const std::stop_token& stop) {
   Nanoseconds due = now_monotonic();
   while (!stop.stop_requested()) {
     const Nanoseconds begin = now_monotonic();
-    const auto state = device_->exchange(force_now(begin));
+    const Outgoing outgoing = take_force(begin);
+    const auto state = device_->exchange(outgoing.force_D_N);
     const Nanoseconds end = now_monotonic();
     {
       const std::scoped_lock lock(mutex_);
       if (state) heard_ = Heard{*state, end, heard_ ? heard_->number + 1 : 1};
       problem_ = state ? std::string() : device_->problem();
-      if (state) longest_ = std::max(longest_, end - begin);
+      if (state) count(begin, end, outgoing.waits_since);
     }
     ++exchanges_;
     if (state) (void)eventfd_write(event_, 1);

@@ -21,6 +21,13 @@ struct Heard {
   std::int64_t number = 0;
 };
 
+/// Time from set_force() with a new force to the end of the exchange that gave the newest force to the device. This
+/// wait is the delay that the bridge adds to a force.
+struct ForceWaits {
+  std::int64_t forces = 0;  ///< new forces that reached the device
+  Nanoseconds sum{}, worst{};
+};
+
 class Exchange {
  public:
   /// @param period shortest time between the starts of two exchanges. @param owner_within the force becomes zero when
@@ -40,10 +47,16 @@ class Exchange {
   [[nodiscard]] std::string problem() const;
   [[nodiscard]] std::int64_t exchanges() const noexcept { return exchanges_; }
   [[nodiscard]] Nanoseconds longest_exchange() const;
+  [[nodiscard]] ForceWaits force_waits() const;
 
  private:
   void live(const std::stop_token& stop);
-  [[nodiscard]] Vec force_now(Nanoseconds now) const;
+  struct Outgoing {
+    Vec force_D_N{};
+    std::optional<Nanoseconds> waits_since;
+  };
+  [[nodiscard]] Outgoing take_force(Nanoseconds now);
+  void count(Nanoseconds begin, Nanoseconds end, std::optional<Nanoseconds> waited_since) noexcept;
 
   std::unique_ptr<Device> device_;
   Nanoseconds period_, owner_within_;
@@ -51,6 +64,8 @@ class Exchange {
   mutable std::mutex mutex_;
   Vec force_{};
   Nanoseconds force_at_{}, longest_{};
+  std::optional<Nanoseconds> waits_since_;  // set while no exchange has begun with the newest force
+  ForceWaits waits_;
   std::optional<Heard> heard_;
   std::string problem_ = "not heard yet";
   std::atomic<std::int64_t> exchanges_{0};

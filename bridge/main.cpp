@@ -88,7 +88,8 @@ std::variant<Options, int> parse(int argc, char** argv) {
   app.add_option("--silence-ms", o.silence_ms, "After so long without a state the device counts as lost")
       ->check(within(2.0, 1000.0))
       ->capture_default_str();
-  app.add_option("--stats", o.stats, "At the end, write JSON: exchanges, age of the state at each SYNC");
+  app.add_option("--stats", o.stats,
+                 "At the end, write JSON: exchanges, age of the state at each SYNC, wait of each force");
   app.add_flag("--rt", o.real_time, "Ask for SCHED_FIFO and locked memory; runs on with a warning when refused");
   app.add_option("--cpu", o.cpu, "Stay on this CPU")->check(within(0, 1023));
   try {
@@ -115,17 +116,22 @@ void say(const std::string& line) {
 std::string stats_json(const Drives& drives, const Exchange& exchange) {
   const auto us = [](Nanoseconds t) { return 1e-3 * static_cast<double>(t.count()); };
   const SampleAges& ages = drives.ages();
+  const ForceWaits waits = exchange.force_waits();
   const auto fresh = std::max<std::int64_t>(1, ages.syncs - ages.stale);
   std::int64_t trips = 0;
   for (const auto& node : drives.nodes()) trips += node.stats().watchdog_trips;
-  return nlohmann::ordered_json{{"exchanges", exchange.exchanges()},
-                                {"longest_exchange_us", us(exchange.longest_exchange())},
-                                {"syncs", ages.syncs},
-                                {"syncs_without_sample", ages.stale},
-                                {"syncs_while_silent", ages.silent},
-                                {"mean_state_age_us", us(ages.sum) / static_cast<double>(fresh)},
-                                {"worst_state_age_us", us(ages.worst)},
-                                {"watchdog_trips", trips}}
+  return nlohmann::ordered_json{
+             {"exchanges", exchange.exchanges()},
+             {"longest_exchange_us", us(exchange.longest_exchange())},
+             {"syncs", ages.syncs},
+             {"syncs_without_sample", ages.stale},
+             {"syncs_while_silent", ages.silent},
+             {"mean_state_age_us", us(ages.sum) / static_cast<double>(fresh)},
+             {"worst_state_age_us", us(ages.worst)},
+             {"forces", waits.forces},
+             {"mean_force_wait_us", us(waits.sum) / static_cast<double>(std::max<std::int64_t>(1, waits.forces))},
+             {"worst_force_wait_us", us(waits.worst)},
+             {"watchdog_trips", trips}}
              .dump(1) +
          "\n";
 }

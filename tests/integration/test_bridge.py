@@ -97,7 +97,9 @@ class Bridge(unittest.TestCase):
             self.assertLessEqual(max(zero), 100)
             stats = rig.device_stats("left")
             print(f"  age of a state at SYNC: mean {stats['mean_state_age_us']:.0f} us, worst {stats['worst_state_age_us']:.0f} us; "
-                  f"longest exchange {stats['longest_exchange_us']:.0f} us", flush=True)
+                  f"longest exchange {stats['longest_exchange_us']:.0f} us; wait of a force: mean {stats['mean_force_wait_us']:.0f} us, "
+                  f"worst {stats['worst_force_wait_us']:.0f} us of {stats['forces']}", flush=True)
+            self.assertGreater(stats["forces"], 0)
             self.assertEqual(stats["syncs_while_silent"], 0)
 
     def test_positions_and_buttons_are_those_of_the_device(self):
