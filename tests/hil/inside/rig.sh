@@ -10,10 +10,11 @@ recorder_s=30                                                 # time that the fl
 hands_priority=85
 
 # As on a rig (docs/deployment.md). By default Linux stops real-time processes for 5 % of each second; from 6.12 on its
-# fair server does so.
-echo -1 > /proc/sys/kernel/sched_rt_runtime_us
+# fair server does so. Once that is off, Linux refuses any value for sched_rt_runtime_us (EBUSY), also the one it has.
+write() { [ "$(cat "$2")" = "$1" ] || echo "$1" > "$2"; }  # VALUE FILE
+write -1 /proc/sys/kernel/sched_rt_runtime_us
 fair_server=/sys/kernel/debug/sched/fair_server/cpu
-for runtime in "$fair_server"*/runtime; do [ ! -e "$runtime" ] || echo 0 > "$runtime"; done
+for runtime in "$fair_server"*/runtime; do [ ! -e "$runtime" ] || write 0 "$runtime"; done
 
 # Reads all needed files in advance, because file access to the host takes an unpredictable amount of virtual time.
 warm() {
