@@ -6,8 +6,6 @@
 #include "firmware/physics/image.hpp"
 #include "firmware/physics/member_bytes.hpp"
 #include "firmware/physics/paper/paper_simulation.hpp"
-#include "firmware/physics/rod/contact_points.hpp"
-#include "firmware/physics/rod/model/describe.hpp"
 #include "firmware/physics/rod/rod_simulation.hpp"
 
 namespace ligature::physics {
@@ -120,13 +118,10 @@ std::span<const Vec3> Simulation::velocities_W() const noexcept {
   return std::visit([](const auto& model) { return model.velocities_W(); }, impl_->model);
 }
 void Simulation::describe(std::span<float> tension_N, std::span<float> turn_rad) const noexcept {
-  if (const auto* rod = std::get_if<rod::RodSimulation>(&impl_->model))
-    return rod::describe(rod->rod(), tension_N, turn_rad);
-  if (const auto* paper = std::get_if<PaperSimulation>(&impl_->model)) paper->describe(tension_N, turn_rad);
+  std::visit([&](const auto& model) { model.describe(tension_N, turn_rad); }, impl_->model);
 }
 std::size_t Simulation::contacts(std::span<ContactPoint> out) const noexcept {
-  if (const auto* rod = std::get_if<rod::RodSimulation>(&impl_->model)) return rod_contacts(rod->rod(), out);
-  return std::get_if<PaperSimulation>(&impl_->model)->contacts(out);
+  return std::visit([&](const auto& model) { return model.contacts(out); }, impl_->model);
 }
 const HandContact& Simulation::hand(Hand h) const noexcept {
   return std::visit([h](const auto& model) -> const HandContact& { return model.hand(h); }, impl_->model);

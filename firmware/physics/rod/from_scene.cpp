@@ -176,11 +176,10 @@ std::variant<Rod, std::string> rod_of(const scene::Scene& scene) {
     const auto& all = state.mesh.s;
     const auto next = std::lower_bound(all.begin(), all.end(), s - 1e-12 * scene.suture.length_m);
     auto i = static_cast<int>(next - all.begin());
-    if (i > 0 && (i == n || s - all[static_cast<std::size_t>(i - 1)] < all[static_cast<std::size_t>(i)] - s)) --i;
+    if (i > 0 && (i == n || s - all[i - 1] < all[i] - s)) --i;
     return i;
   };
-  for (const auto& load : scene.world.loads)
-    state.load[static_cast<std::size_t>(mesh_node(load.node))] += vec(load.force_N);
+  for (const auto& load : scene.world.loads) state.load[mesh_node(load.node)] += vec(load.force_N);
   for (const auto& f : scene.world.fixed) {
     const int node = mesh_node(f.node);
     if (f.direction) {
@@ -188,7 +187,7 @@ std::variant<Rod, std::string> rod_of(const scene::Scene& scene) {
     } else {
       rod.support(node, vec(f.position_m));
     }
-    state.x[static_cast<std::size_t>(node)] = vec(f.position_m);
+    state.x[node] = vec(f.position_m);
   }
   rod.moved();
   return rod;

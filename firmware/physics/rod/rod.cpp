@@ -44,8 +44,8 @@ Rod::Rod(const Material& material, const Numerics& numerics, const Parts& parts,
     v_before_.assign(static_cast<std::size_t>(n), Vec{});
   }
   for (int i = 0; i < n; ++i) {
-    state_.mesh.s[static_cast<std::size_t>(i)] = material.length_m * i / (n - 1);
-    state_.x[static_cast<std::size_t>(i)] = make(state_.mesh.s[static_cast<std::size_t>(i)], 0, 0);
+    state_.mesh.s[i] = material.length_m * i / (n - 1);
+    state_.x[i] = make(state_.mesh.s[i], 0, 0);
   }
   if (parts.frames()) spin_.reserve(n);
   if (parts.turning) contacts_.reserve_turning();
@@ -60,14 +60,11 @@ Rod::Rod(const Rod& other)
   *this = other;
 }
 
-bool Rod::has_room_for(const Rod& other) const noexcept {
-  return parts_ == other.parts_ && state_.nodes() == other.state_.nodes() &&
-         bodies.capacity() == other.bodies.capacity();
-}
-
 Rod& Rod::operator=(const Rod& other) {
   if (this == &other) return *this;
-  if (!has_room_for(other)) return *this = Rod(other);
+  const bool fits =
+      parts_ == other.parts_ && state_.nodes() == other.state_.nodes() && bodies.capacity() == other.bodies.capacity();
+  if (!fits) return *this = Rod(other);
   RodKept::operator=(other);
   RodNow::operator=({});
   RodCache::forget();
@@ -104,9 +101,8 @@ void Rod::moved() noexcept {
 
 void Rod::mesh_changed() noexcept {
   for (auto& c : state_.mesh.clamp) c = Clamp::kFree;
-  for (int h = 0; h < state_.hold_count; ++h) {
-    const Hold& hold = state_.holds[static_cast<std::size_t>(h)];
-    if (hold.node >= 0 && hold.directed) state_.mesh.clamp[static_cast<std::size_t>(hold.node)] = Clamp::kClamped;
+  for (const Hold& hold : state_.slots()) {
+    if (hold.node >= 0 && hold.directed) state_.mesh.clamp[hold.node] = Clamp::kClamped;
   }
   state_.mesh.rebuild(material_);
   contacts_.forget_matrix();
@@ -115,25 +111,19 @@ void Rod::mesh_changed() noexcept {
 
 int Rod::add_hold(const Hold& hold) noexcept {
   int h = 0;
-  while (h < state_.hold_count && state_.holds[static_cast<std::size_t>(h)].node >= 0) ++h;
+  while (h < state_.hold_count && state_.holds[h].node >= 0) ++h;
   if (h == kMaxHolds) return -1;
   state_.hold_count = std::max(state_.hold_count, h + 1);
-  state_.holds[static_cast<std::size_t>(h)] = hold;
+  state_.holds[h] = hold;
   return h;
 }
 
-int Rod::support(int node, Vec p) noexcept {
-  Hold hold;
-  hold.node = node;
-  hold.rigid = true;
-  hold.target = p;
-  return add_hold(hold);
-}
+int Rod::support(int node, Vec p) noexcept { return add_hold({.node = node, .rigid = true, .target = p}); }
 
 int Rod::clamp(int node, Vec p, Vec direction) noexcept {
   const int h = support(node, p);
   if (h < 0) return h;
-  Hold& hold = state_.holds[static_cast<std::size_t>(h)];
+  Hold& hold = state_.holds[h];
   hold.directed = true;
   hold.direction = unit(direction);
   if (parts_.twist) twist_.attach(state_, h);
@@ -143,18 +133,14 @@ int Rod::clamp(int node, Vec p, Vec direction) noexcept {
 
 int Rod::grip(int node, double stiffness_N_per_m, double damping_N_s_per_m, Vec tool, bool holds_roll,
               bool directed) noexcept {
-  Hold hold;
-  hold.node = node;
-  hold.stiffness_N_per_m = stiffness_N_per_m;
-  hold.damping_N_s_per_m = damping_N_s_per_m;
-  hold.target = tool;
-  const int h = add_hold(hold);
+  const int h = add_hold(
+      {.node = node, .stiffness_N_per_m = stiffness_N_per_m, .damping_N_s_per_m = damping_N_s_per_m, .target = tool});
   if (h >= 0 && parts_.twist && holds_roll) {
     twist_.attach(state_, h);
     if (parts_.frames()) spin_.attach(state_, h);
   }
   if (h >= 0 && directed) {
-    Hold& held = state_.holds[static_cast<std::size_t>(h)];
+    Hold& held = state_.holds[h];
     held.direction = tangent_at(state_, held);
     held.directed = true;
     mesh_changed();
@@ -163,7 +149,7 @@ int Rod::grip(int node, double stiffness_N_per_m, double damping_N_s_per_m, Vec 
 }
 
 void Rod::release(int hold) noexcept {
-  Hold& h = state_.holds[static_cast<std::size_t>(hold)];
+  Hold& h = state_.holds[hold];
   if (parts_.twist && h.holds_roll) twist_.detach(state_, hold);
   const bool directed = h.directed;
   h = Hold{};
@@ -172,7 +158,7 @@ void Rod::release(int hold) noexcept {
 }
 
 void Rod::steer(int hold, Vec steer, Vec direction) noexcept {
-  Hold& h = state_.holds[static_cast<std::size_t>(hold)];
+  Hold& h = state_.holds[hold];
   h.steered = true;
   h.steer = steer;
   if (h.directed) h.direction = direction;
@@ -258,10 +244,9 @@ void Rod::begin_tick(const HandSpeed& hands, const TimeLeft& left) noexcept {
 }
 
 void Rod::feel_hands(double ahead_s) noexcept {
-  for (int h = 0; h < state_.hold_count; ++h) {
-    Hold& hold = state_.holds[static_cast<std::size_t>(h)];
+  for (Hold& hold : state_.slots()) {
     if (hold.node < 0 || hold.rigid) continue;
-    const auto i = static_cast<std::size_t>(hold.node);
+    const int i = hold.node;
     hold.force = hold.stiffness_N_per_m * (state_.x[i] + ahead_s * state_.v[i] - hold.target) +
                  hold.damping_N_s_per_m * (state_.v[i] - hold.velocity);
   }
@@ -269,10 +254,9 @@ void Rod::feel_hands(double ahead_s) noexcept {
 
 double Rod::all_J(const Energy& e) const noexcept {
   double sum = e.kinetic_J + e.stretch_J + e.bend_J + e.gravity_J + e.give_J + twist_energy_J();
-  for (int h = 0; h < state_.hold_count; ++h) {
-    const Hold& hold = state_.holds[static_cast<std::size_t>(h)];
+  for (const Hold& hold : state_.slots()) {
     if (hold.node < 0) continue;
-    const Vec off = state_.x[static_cast<std::size_t>(hold.node)] - hold.target;
+    const Vec off = state_.x[hold.node] - hold.target;
     sum += 0.5 * hold.stiffness_N_per_m * dot(off, off);
   }
   for (std::size_t i = 0; i < state_.x.size(); ++i) sum -= dot(state_.load[i], state_.x[i]);
@@ -287,8 +271,7 @@ void Rod::tick(const std::array<Vec, kMaxHolds>& goals, const TimeLeft& left) no
   for (int k = 0; k < report_.substeps; ++k) {
     const double share = static_cast<double>(k + 1) / report_.substeps;
     for (int h = 0; h < state_.hold_count; ++h) {
-      const auto at = static_cast<std::size_t>(h);
-      state_.holds[at].target = starts[at] + share * (goals[at] - starts[at]);
+      state_.holds[h].target = starts[h] + share * (goals[h] - starts[h]);
     }
     substep_index_ = k;
     braked_ = false;

@@ -116,7 +116,6 @@ class Rod : private RodKept, private RodNow, private RodCache {
   bool substep(double dt_s) noexcept;
   template <unsigned Bits>
   bool look(double dt_s) noexcept;
-  bool list_is_good(double dt_s) noexcept;
   bool relist(long reserve) noexcept;
   template <unsigned Bits>
   bool settle(double dt_s) noexcept;
@@ -142,7 +141,6 @@ class Rod : private RodKept, private RodNow, private RodCache {
   template <bool Friction>
   Outcome settle_directly(const Effort& effort) noexcept;
   [[nodiscard]] bool can_wait() const noexcept { return solves_directly() && patience_.lasts(); }
-  [[nodiscard]] bool has_room_for(const Rod& other) const noexcept;
   bool put_off() noexcept;
   bool give_up() noexcept;
   double brake(double dt_s) noexcept;

@@ -57,13 +57,10 @@ RodSimulation::RodSimulation(const scene::Scene& scene, Rod rod)
   reset();
 }
 
-void RodSimulation::let_go() noexcept {
-  for (std::size_t h = 0; h < 2; ++h) jaws_[h].forget(), closing_[h].forget();
-}
-
 void RodSimulation::reset() noexcept {
   rod_ = initial_;
-  let_go();
+  for (auto& jaws : jaws_) jaws.forget();
+  for (auto& closing : closing_) closing.forget();
   closed_ = {false, false};
   inside_ = {true, true};
   hands_ = {};
@@ -79,23 +76,14 @@ bool RodSimulation::continue_from(const RodSimulation& other) noexcept {
 }
 
 void RodSimulation::set_state(std::span<const Vec3> p_W, std::span<const Vec3> v_W) noexcept {
-  rod_ = initial_;
-  let_go();
+  reset();
   State& state = rod_.state();
   for (std::size_t i = 0; i < state.x.size(); ++i) {
-    bool fixed = false;
-    for (int h = 0; h < state.hold_count; ++h)
-      fixed |= state.holds[static_cast<std::size_t>(h)].node == static_cast<int>(i);
-    if (fixed) continue;
+    if (state.is_held(static_cast<int>(i))) continue;
     if (i < p_W.size()) state.x[i] = vec(p_W[i]);
     state.v[i] = i < v_W.size() ? vec(v_W[i]) : Vec{};
   }
   rod_.moved();
-  closed_ = {false, false};
-  inside_ = {true, true};
-  ticks_ = 0;
-  health_ = {};
-  hands_ = {};
   publish();
 }
 
@@ -106,11 +94,7 @@ int RodSimulation::nearest_free(Vec p) const noexcept {
   for (std::size_t i = 0; i < state.x.size(); ++i) {
     const Vec off = state.x[i] - p;
     const double d2 = dot(off, off);
-    if (d2 >= least2) continue;
-    bool taken = false;
-    for (int h = 0; h < state.hold_count; ++h)
-      taken |= state.holds[static_cast<std::size_t>(h)].node == static_cast<int>(i);
-    if (!taken) least2 = d2, best = static_cast<int>(i);
+    if (d2 < least2 && !state.is_held(static_cast<int>(i))) least2 = d2, best = static_cast<int>(i);
   }
   return best;
 }
@@ -119,7 +103,7 @@ void RodSimulation::close_jaws(std::size_t h, const ToolInput& tool, const Mat* 
   const Vec tip = vec(tool.p_WT);
   const int node = nearest_free(tip);
   if (node < 0 || norm(nearest_place(rod_.state(), node, tip).x - tip) > reach_m_) return;
-  const Vec place = jaws_[h].would_hold(rod_, node, tip).x, velocity = rod_.state().v[static_cast<std::size_t>(node)];
+  const Vec place = jaws_[h].would_hold(rod_, node, tip).x, velocity = rod_.state().v[node];
   const Vec tip_before = tip - rod_.numerics().tick_s * vec(tool.v_WT);
   closing_[h].start(vec3(place - tip_before), vec3(velocity) - tool.v_WT);
   jaws_[h].close(rod_, node, place, R_WT);
@@ -187,8 +171,7 @@ void RodSimulation::tick(const std::array<ToolInput, 2>& tools, const TimeLeft& 
   State& state = rod_.state();
   x_before_ = state.x;  // same size, so no allocation
   v_before_ = state.v;
-  for (int h = 0; h < state.hold_count; ++h)
-    goals_[static_cast<std::size_t>(h)] = state.holds[static_cast<std::size_t>(h)].target;
+  for (int h = 0; h < state.hold_count; ++h) goals_[h] = state.holds[h].target;
   update_grasp(tools);
   if (grippers_) update_grippers(tools);
   rod_.tick(goals_, left);
@@ -213,7 +196,7 @@ void RodSimulation::publish() noexcept {
     HandContact& c = hands_[h];
     c = {};
     if (!jaws_[h].holds()) continue;
-    const Hold& hold = state.holds[static_cast<std::size_t>(jaws_[h].middle(rod_))];
+    const Hold& hold = state.holds[jaws_[h].middle(rod_)];
     c.node = hold.node;
     c.p_WG = vec3(jaws_[h].place(rod_)) - closing_[h].offset_m();  // the coupling computes the hand's force from these
     c.v_WG = vec3(jaws_[h].velocity(rod_)) - closing_[h].rate_m_per_s();

@@ -58,6 +58,12 @@ class RodSimulation : private HandsCourse, private Stage {
   [[nodiscard]] std::span<const Vec3> velocities_W() const noexcept { return velocities_; }
   [[nodiscard]] const HandContact& hand(Hand h) const noexcept { return hands_[static_cast<std::size_t>(h)]; }
   [[nodiscard]] const Diagnostics& diagnostics() const noexcept { return health_; }
+  /// Computes for each node the tension of the segment after it, N, and the twist angle between node 0 and this node,
+  /// rad. The angle grows along a segment of length ds by M ds / GJ (M: twisting moment of the last tick, GJ: twisting
+  /// stiffness). O(n).
+  void describe(std::span<float> tension_N, std::span<float> turn_rad) const noexcept;
+  /// @see Simulation::contacts
+  std::size_t contacts(std::span<ContactPoint> out) const noexcept;
   void set_work(long instructions) noexcept {
     initial_.numerics().given_work = rod_.numerics().given_work = instructions;
   }
@@ -78,7 +84,6 @@ class RodSimulation : private HandsCourse, private Stage {
 
  private:
   RodSimulation(const scene::Scene& scene, Rod rod);
-  void let_go() noexcept;
   void close_jaws(std::size_t hand, const ToolInput& tool, const Mat* R_WT) noexcept;
   void update_grasp(const std::array<ToolInput, 2>& tools) noexcept;
   void update_grippers(const std::array<ToolInput, 2>& tools) noexcept;

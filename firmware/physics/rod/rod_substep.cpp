@@ -37,12 +37,6 @@ bool Rod::relist(long reserve) noexcept {
   return false;
 }
 
-bool Rod::list_is_good(double dt_s) noexcept {
-  const double spare = 2.0 * material_.radius_m * tuning.skin_d - near_m_;
-  if (!stale_ && !motion_.used_up(spare, horizon_s_, 2.0 * dt_s)) return true;
-  return relist(0);
-}
-
 // Contact detection: collects all contacts of this substep. @return false if too little work or time is left.
 template <unsigned Bits>
 bool Rod::look(double dt_s) noexcept {
@@ -50,7 +44,8 @@ bool Rod::look(double dt_s) noexcept {
   measured_ = false;
   seen_ = ContactReport{};
   if constexpr ((Bits & kContact) != 0) {
-    if (!list_is_good(dt_s)) return false;
+    const double spare_m = 2.0 * material_.radius_m * tuning.skin_d - near_m_;
+    if ((stale_ || motion_.used_up(spare_m, horizon_s_, 2.0 * dt_s)) && !relist(0)) return false;
   }
   const long before = work_.used();
   if constexpr ((Bits & kContact) != 0) {
@@ -63,7 +58,7 @@ bool Rod::look(double dt_s) noexcept {
     if (has_floor) contacts_.collect_floor(state_, floor_m, material_.radius_m, look_m, floor_friction, work_);
     for (int b = 0; b < count; ++b) {
       if (!work_.time().allows()) return false;
-      const Body& body = bodies[static_cast<std::size_t>(b)];
+      const Body& body = bodies[b];
       contacts_.collect_body<(Bits & kDrum) != 0>(state_, body, b, material_.radius_m, look_m, tick_travel_m_, work_);
     }
   }
@@ -77,9 +72,9 @@ bool Rod::look(double dt_s) noexcept {
 
 // Work that this substep may spend on setting up its contact rows and on passes over them. For each later substep of
 // the tick, the cost of the last contact detection and of the last rows with one pass are reserved. Setting up rows may
-// use all that is left. Of what is not reserved, passes get twice an equal share, so that a hard substep leaves work for
-// the next, and the last one may use all. Newton's method may use everything, as a substep that does not converge is
-// continued in the next tick.
+// use all that is left. Of what is not reserved, passes get twice an equal share, so that a hard substep leaves work
+// for the next, and the last one may use all. Newton's method may use everything, as a substep that does not converge
+// is continued in the next tick.
 Rod::Allowance Rod::work_allowed(bool metric_too) const noexcept {
   const long after = report_.substeps - substep_index_ - 1;
   const auto span = contacts_.span();

@@ -105,12 +105,6 @@ inline constexpr Lanes kAxisX = {1, 0, 0, 0}, kAxisY = {0, 1, 0, 0}, kAxisZ = {0
   return {{all<0>(u) * w.v}, {all<1>(u) * w.v}, {all<2>(u) * w.v}};
 }
 
-/// alpha u u^T + beta I.
-[[nodiscard]] inline Mat dyad(Vec u, double alpha, double beta) noexcept {
-  const Vec w = alpha * u;
-  return {{all<0>(u) * w.v + beta * kAxisX}, {all<1>(u) * w.v + beta * kAxisY}, {all<2>(u) * w.v + beta * kAxisZ}};
-}
-
 [[nodiscard]] inline Mat transposed(const Mat& a) noexcept {
   return {make(a.x[0], a.y[0], a.z[0]), make(a.x[1], a.y[1], a.z[1]), make(a.x[2], a.y[2], a.z[2])};
 }

@@ -44,8 +44,8 @@ BandSolver random_system(int n, unsigned seed) {
   BandSolver s;
   s.resize(n);
   for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) {
-    s.diagonal[i] = dyad(vector(), 1.0, 20.0);  // large enough for a positive definite matrix
-    s.couple[i] = dyad(vector(), 1.0, -2.0);
+    s.diagonal[i] = dyad(vector(), 1.0) + scaled_identity(20.0);  // large enough for a positive definite matrix
+    s.couple[i] = dyad(vector(), 1.0) + scaled_identity(-2.0);
     s.skip[i] = normal();
     s.rhs[i] = vector();
   }
@@ -141,7 +141,7 @@ TEST(BandSolver, StaysAccurateAlongALongStiffBeam) {  // unsymmetric rounding er
   s.resize(n);
   for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) {
     const double phase = 0.01 * static_cast<double>(i);
-    const Mat stretch = dyad(make(std::cos(phase), std::sin(phase), 0.3), 50.0, 0.0);
+    const Mat stretch = dyad(make(std::cos(phase), std::sin(phase), 0.3), 50.0);
     s.diagonal[i] = scaled_identity(6.01) + 2.0 * stretch;
     s.couple[i] = scaled_identity(-4.0) - stretch;
     s.skip[i] = 1.0;

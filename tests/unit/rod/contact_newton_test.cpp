@@ -28,8 +28,8 @@ struct Jam {
     const auto vector = [&] { return Vec{{normal(), normal(), normal(), 0.0}}; };
     solver.resize(kNodes);
     for (std::size_t i = 0; i < static_cast<std::size_t>(kNodes); ++i) {
-      solver.diagonal[i] = dyad(vector(), 40.0, 20.0);
-      solver.couple[i] = dyad(vector(), 1.0, -6.0);
+      solver.diagonal[i] = dyad(vector(), 40.0) + scaled_identity(20.0);
+      solver.couple[i] = dyad(vector(), 1.0) + scaled_identity(-6.0);
       solver.skip[i] = 1.0;
       solver.rhs[i] = Vec{};
       free[i] = vector();

@@ -15,12 +15,15 @@ double urgency(const Contact& c) noexcept { return c.gap_m - (dot(c.p, c.p) > 0.
 
 }  // namespace
 
-// Appends a contact that the caller then fills in; this avoids a copy, because contacts are large. @return nullptr if
-// there is no room.
-Contact* ContactSet::add() noexcept {
-  if (contacts_.size() < contacts_.capacity()) return &contacts_.emplace_back();
-  overflow_ = true;
-  return nullptr;
+// Appends a contact whose other members the caller then fills in; this avoids a copy, because contacts are large.
+// @param impulse, stuck storage between substeps. @return nullptr if there is no room.
+Contact* ContactSet::add(double gap_m, double reach_m, double mu, Vec& impulse, char& stuck) noexcept {
+  overflow_ |= contacts_.size() == contacts_.capacity();
+  if (overflow_) return nullptr;
+  Contact& made = contacts_.emplace_back();
+  made.gap_m = gap_m, made.reach_m = reach_m, made.mu = mu, made.p = impulse;
+  made.keep = &impulse, made.stuck = &stuck;
+  return &made;
 }
 
 bool ContactSet::afford_world(int nodes, int bodies, const Work& work) noexcept {
@@ -64,7 +67,7 @@ void ContactSet::choose_rows(int most, int widest, int nodes, ContactReport& rep
     }
     window_first_ = std::min(window_first_, c.first);
     window_last_ = std::max(window_last_, c.last);
-    if (static_cast<int>(k) != rows_) std::swap(c, contacts_[static_cast<std::size_t>(rows_)]);
+    if (static_cast<int>(k) != rows_) std::swap(c, contacts_[rows_]);
     ++rows_;
   }
   if (rows_ == 0) window_first_ = window_last_ = (nodes - 2) / 2;
@@ -76,11 +79,7 @@ void ContactSet::collect_floor(const State& state, double floor_m, double radius
                                Work& work) noexcept {
   for (std::size_t i = 0; i < state.x.size(); ++i) {
     const double gap = state.x[i][2] - floor_m - radius_m;
-    if (gap > look_m) {
-      floor_impulse[i] = Vec{};
-      continue;
-    }
-    Contact* const made = add();
+    Contact* const made = gap > look_m ? nullptr : add(gap, radius_m, mu, floor_impulse[i], floor_stuck[i]);
     if (made == nullptr) {
       floor_impulse[i] = Vec{};
       continue;
@@ -90,12 +89,6 @@ void ContactSet::collect_floor(const State& state, double floor_m, double radius
     contact.node[0] = contact.first = contact.last = static_cast<std::int32_t>(i);
     contact.w[0] = 1.0;
     contact.n = make(0, 0, 1);
-    contact.gap_m = gap;
-    contact.reach_m = radius_m;
-    contact.mu = mu;
-    contact.p = floor_impulse[i];
-    contact.keep = &floor_impulse[i];
-    contact.stuck = &floor_stuck[i];
     work.spend(price::kGuard);
   }
   work.spend(price::kWorldNode * static_cast<long>(state.x.size()));
@@ -104,7 +97,7 @@ void ContactSet::collect_floor(const State& state, double floor_m, double radius
 template <bool Drum>
 void ContactSet::collect_body(const State& state, const Body& body, int index, double radius_m, double look_m,
                               double travel_m, Work& work) noexcept {
-  double& due = body_due_[static_cast<std::size_t>(index)];
+  double& due = body_due_[index];
   if (due - travel_m > look_m) return;
   const std::size_t n = state.x.size();
   const double reach = body.radius_m + radius_m;
@@ -112,7 +105,7 @@ void ContactSet::collect_body(const State& state, const Body& body, int index, d
   const double half = 0.5 * norm(body.p1 - body.p0);
   double nearest2 = 1e300, longest = 0.0, least = 1e150;
   for (std::size_t j = 0; j + 1 < n; ++j) {
-    Vec& keep = body_impulse[static_cast<std::size_t>(index) * n + j];
+    Vec& keep = body_impulse[index * n + j];
     const Vec off = 0.5 * (state.x[j] + state.x[j + 1]) - middle;
     const double within = half + state.mesh.rest[j] + reach;  // half a rest length would do without stretch
     const double far = within + look_m, off2 = dot(off, off);
@@ -125,11 +118,7 @@ void ContactSet::collect_body(const State& state, const Body& body, int index, d
     const auto c = closest(body.p0, body.p1, state.x[j], state.x[j + 1]);
     const double distance = std::sqrt(c.distance2), gap = distance - reach;
     least = std::min(least, gap);
-    if (gap > look_m) {
-      keep = Vec{};
-      continue;
-    }
-    Contact* const made = add();
+    Contact* const made = gap > look_m ? nullptr : add(gap, reach, body.friction, keep, body_stuck[index * n + j]);
     if (made == nullptr) {
       keep = Vec{};
       continue;
@@ -142,12 +131,6 @@ void ContactSet::collect_body(const State& state, const Body& body, int index, d
     contact.n = distance > 1e-12 ? (1.0 / distance) * c.between : make(0, 0, 1);
     contact.surface = body.velocity;
     if constexpr (Drum) contact.surface += cross(body.spin, contact.n);
-    contact.gap_m = gap;
-    contact.reach_m = reach;
-    contact.mu = body.friction;
-    contact.p = keep;
-    contact.keep = &keep;
-    contact.stuck = &body_stuck[static_cast<std::size_t>(index) * n + j];
     work.spend(price::kBody + price::kGuard);
   }
   work.spend(price::kWorldNode * static_cast<long>(n));

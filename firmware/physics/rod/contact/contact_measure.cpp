@@ -16,7 +16,7 @@ namespace {
 /// Replaces the closest points s, t by the points at which the pair's impulse acts (touch.hpp).
 void press(Candidate& pair, const State& state, double& s, double& t) noexcept {
   const Mesh& mesh = state.mesh;
-  const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
+  const std::int32_t a = pair.a, b = pair.b;
   const double at_a = mesh.s[a] + s * mesh.rest[a], at_b = mesh.s[b] + t * mesh.rest[b];
   pair.next = {at_a, at_b};
   if (dot(pair.impulse, pair.impulse) == 0.0) return;
@@ -40,20 +40,17 @@ bool ContactSet::find_due(const Motion& motion, double dt_s, Work& work) noexcep
   long listed = 0;
   for (std::size_t k = 0; k < groups.size(); ++k) {
     const PairGroup& g = groups[k];
-    const auto p = static_cast<std::size_t>(g.p), q = static_cast<std::size_t>(g.q);
-    if (g.due - motion.gone_of_blocks(p, q) > 2.0 * dt_s * motion.rate_of_blocks(p, q)) continue;
+    if (g.due - motion.gone_of_blocks(g.p, g.q) > 2.0 * dt_s * motion.rate_of_blocks(g.p, g.q)) continue;
     awake_.push_back(static_cast<std::int32_t>(k));
     listed += g.last - g.first;
   }
   if (price::kCheck * listed > work.left()) return false;
   work.spend(price::kCheck * listed);
   for (const auto g : awake_) {
-    for (std::int32_t k = groups[static_cast<std::size_t>(g)].first; k < groups[static_cast<std::size_t>(g)].last;
-         ++k) {
-      Candidate& pair = pairs[static_cast<std::size_t>(k)];
-      const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
-      const double gap_m = pair.due - motion.gone(a, b);
-      if (gap_m > pair.near_m + 2.0 * dt_s * motion.rate(a, b)) {
+    for (std::int32_t k = groups[g].first; k < groups[g].last; ++k) {
+      Candidate& pair = pairs[k];
+      const double gap_m = pair.due - motion.gone(pair.a, pair.b);
+      if (gap_m > pair.near_m + 2.0 * dt_s * motion.rate(pair.a, pair.b)) {
         pair.impulse = Vec{};
       } else {
         const bool close = gap_m < pair.near_m && pair.bulge_m > 0.0;
@@ -75,9 +72,7 @@ bool ContactSet::find_due(const Motion& motion, double dt_s, Work& work) noexcep
 // Computes closest points and distances of four pairs at once; `places` are the indices of these pairs in due_.
 template <bool Smooth>
 void ContactSet::measure(const std::int32_t* places, const State& state) noexcept {
-  const auto pair = [&](std::size_t l) -> const Candidate& {
-    return pairs[static_cast<std::size_t>(due_[static_cast<std::size_t>(places[l])])];
-  };
+  const auto pair = [&](std::size_t l) -> const Candidate& { return pairs[due_[places[l]]]; };
   const auto segments = [&](std::int32_t Candidate::*end) {
     return std::array<std::size_t, 4>{static_cast<std::size_t>(pair(0).*end), static_cast<std::size_t>(pair(1).*end),
                                       static_cast<std::size_t>(pair(2).*end), static_cast<std::size_t>(pair(3).*end)};
@@ -98,7 +93,7 @@ void ContactSet::measure(const std::int32_t* places, const State& state) noexcep
     distance = close ? root(curves.distance2) : chord;
   }
   for (int l = 0; l < 4; ++l) {
-    Measured& m = measured_[static_cast<std::size_t>(places[l])];
+    Measured& m = measured_[places[l]];
     m = {make(c.between.x[l], c.between.y[l], c.between.z[l]), c.s[l], c.t[l], distance[l], chord[l], smooth[l] != 0};
   }
 }
@@ -107,17 +102,15 @@ void ContactSet::measure(const std::int32_t* places, const State& state) noexcep
 // same distance of touch, because every close pair touches at the diameter.
 void ContactSet::bend(const State& state) noexcept {
   if (close_.empty()) return;
-  const double diameter_m = pairs[static_cast<std::size_t>(due_[static_cast<std::size_t>(close_[0])])].reach_m;
+  const double diameter_m = pairs[due_[close_[0]]].reach_m;
   const std::int32_t first = std::max(bent_.first, 1), last = std::min(bent_.last, state.nodes() - 2);
-  for (std::int32_t i = first; i <= last; ++i)
-    SmoothSegment::corner(state, static_cast<std::size_t>(i), diameter_m, corner_[static_cast<std::size_t>(i)],
-                          share_[static_cast<std::size_t>(i)]);
+  for (std::int32_t i = first; i <= last; ++i) SmoothSegment::corner(state, i, diameter_m, corner_[i], share_[i]);
 }
 
 // Changes the nodes and weights of a contact so that it acts on the smooth curve at parameter s, instead of on the
 // chord that begins at node[at].
 void ContactSet::bend_row(Contact& c, int at, double s, const State& state) const noexcept {
-  const auto j = static_cast<std::size_t>(c.node[at]);
+  const std::int32_t j = c.node[at];
   const double side = at == 0 ? -0.25 : 0.25, h_before = state.cut_before[j], h_after = state.cut_after[j];
   const double p = larger(1.0 - s / h_before, 0.0), q = larger(1.0 - (1.0 - s) / h_after, 0.0);
   const auto add = [&](std::int32_t node, double w) {
@@ -157,19 +150,18 @@ bool ContactSet::collect_thread(const State& state, const Motion& motion, double
   if (!find_near(state, dt_s, pieces) || !choose_near(work, pieces)) return false;
   std::size_t next = 0;
   for (const auto index : awake_) {
-    PairGroup& group = groups[static_cast<std::size_t>(index)];
+    PairGroup& group = groups[index];
     bool touches = false;
     if (!pieces.allow((price::kTake + price::kGuard) * (group.last - group.first))) return false;
     for (; next < due_.size() && due_[next] < group.last; ++next) {
-      Candidate& pair = pairs[static_cast<std::size_t>(due_[next])];
+      Candidate& pair = pairs[due_[next]];
       const Measured& m = measured_[next];
-      pair.due = std::min(m.distance_m, m.chord_m - pair.bulge_m) - pair.reach_m +
-                 motion.gone(static_cast<std::size_t>(pair.a), static_cast<std::size_t>(pair.b));
+      pair.due = std::min(m.distance_m, m.chord_m - pair.bulge_m) - pair.reach_m + motion.gone(pair.a, pair.b);
       touches |= take(pair, m, state, mu, report);
     }
     group.due = touches ? PairGroup::kAtOnce : 1e300;
     for (std::int32_t k = group.first; !touches && k < group.last; ++k) {
-      const Candidate& pair = pairs[static_cast<std::size_t>(k)];
+      const Candidate& pair = pairs[k];
       group.due = std::min(group.due, pair.due - pair.near_m);
     }
   }
@@ -189,7 +181,7 @@ bool ContactSet::take(Candidate& pair, const Measured& m, const State& state, do
     return false;
   }
   press(pair, state, s, t);
-  Contact* const made = add();
+  Contact* const made = add(gap, pair.reach_m, mu, pair.impulse, pair.stuck);
   if (made == nullptr) return pair.impulse = Vec{}, true;  // safe_fraction() is then 0: nothing moves
   Contact& contact = *made;
   contact.node[0] = pair.a, contact.node[1] = pair.a + 1, contact.node[2] = pair.b, contact.node[3] = pair.b + 1;
@@ -197,14 +189,8 @@ bool ContactSet::take(Candidate& pair, const Measured& m, const State& state, do
   contact.first = contact.node[0], contact.last = contact.node[3];
   if (m.smooth) bend_row(contact, 0, s, state), bend_row(contact, 2, t, state);
   contact.n = m.distance_m > 1e-12 ? (1.0 / m.distance_m) * m.between : make(0, 0, 1);
-  contact.gap_m = gap;
-  contact.reach_m = pair.reach_m;
-  contact.mu = mu;
-  contact.p = pair.impulse;
   contact.distance_m = m.chord_m;
-  contact.keep = &pair.impulse;
   contact.pair = &pair;
-  contact.stuck = &pair.stuck;
   return true;
 }
 

@@ -19,7 +19,7 @@ bool ContactSet::find_near(const State& state, double dt_s, Pieces& pieces) noex
   for (std::size_t k = 0; k < due_.size(); ++k) {
     if (!pieces.allow(price::kPlace)) return false;
     const Measured& m = measured_[k];
-    const Candidate& pair = pairs[static_cast<std::size_t>(due_[k])];
+    const Candidate& pair = pairs[due_[k]];
     const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
     const double gap = m.distance_m - pair.reach_m, spare = gap - pair.near_m, s = m.s, t = m.t;
     const Vec u = (1.0 - t) * state.v[b] + t * state.v[b + 1] - (1.0 - s) * state.v[a] - s * state.v[a + 1];
@@ -50,8 +50,8 @@ std::size_t ContactSet::bin(double at_m) const noexcept {
 bool ContactSet::has_contact_at(const Near& one, double reach_m, long& compared) const noexcept {
   const double within_m = tuning.place_d * reach_m;
   for (std::size_t at = bin(one.a - within_m), last = bin(one.a + within_m); at <= last; ++at) {
-    for (std::int32_t k = heads_[at]; k >= 0; k = near_[static_cast<std::size_t>(k)].next) {
-      const Near& other = near_[static_cast<std::size_t>(k)];
+    for (std::int32_t k = heads_[at]; k >= 0; k = near_[k].next) {
+      const Near& other = near_[k];
       ++compared;
       if (std::abs(other.a - one.a) < within_m && std::abs(other.b - one.b) < within_m) return true;
     }
@@ -76,7 +76,7 @@ bool ContactSet::choose_near(Work& work, Pieces& pieces) noexcept {
     std::pop_heap(near_.begin(), near_.begin() + static_cast<std::ptrdiff_t>(left), is_farther);
     Near& one = near_[left - 1];
     const auto due = static_cast<std::size_t>(one.due);
-    const double reach_m = pairs[static_cast<std::size_t>(due_[due])].reach_m;
+    const double reach_m = pairs[due_[due]].reach_m;
     long compared = 0;
     const bool has_contact = !one.loaded && has_contact_at(one, reach_m, compared);
     if (price::kBeside * compared > work.left() || !pieces.allow(price::kBeside * compared)) return false;

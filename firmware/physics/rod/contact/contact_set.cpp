@@ -63,7 +63,7 @@ template <bool Turns>
 double ContactSet::merit(const Vec* v) const noexcept {
   double sum = 0.0;
   for (const auto k : loaded_) {
-    const Contact& c = contacts_[static_cast<std::size_t>(k)];
+    const Contact& c = contacts_[k];
     const double pn = dot(c.p, c.n);
     sum += 0.5 * dot(c.p, velocity<Turns>(k, v) + c.u_free) - pn * c.target + 0.5 * c.soft * pn * pn;
   }
@@ -78,7 +78,7 @@ double ContactSet::push(BandSolver& solver, Vec* v) noexcept {
   solver.solve(window_first_, window_last_, extra_.data(), step_.data(), false);
   Lanes largest2{};
   for (int i = window_first_; i <= window_last_; ++i) {
-    const Lanes step = step_[static_cast<std::size_t>(i)].v, step2 = step * step;
+    const Lanes step = step_[i].v, step2 = step * step;
     v[i].v += step;
     largest2 = step2 > largest2 ? step2 : largest2;
   }
@@ -98,9 +98,10 @@ void ContactSet::make_column(Contact& c, const ContactMetric& metric, float* col
     w[k] = all_eight(c.weight[k]);
   }
   for (std::size_t j = 0; j < stride_; j += 8) {
-    Eight sum = w[0] * load_eight(r[0] + j);  // NOLINT(clang-analyzer-core.UndefinedBinaryOperatorResult): c.count >= 1
-    for (int k = 1; k < c.count; ++k) sum += w[k] * load_eight(r[k] + j);
-    store_eight(column + j, sum);
+    Eight sum =
+        w[0] * load_as<Eight>(r[0] + j);  // NOLINT(clang-analyzer-core.UndefinedBinaryOperatorResult): c.count >= 1
+    for (int k = 1; k < c.count; ++k) sum += w[k] * load_as<Eight>(r[k] + j);
+    store_as(column + j, sum);
   }
   double own = 0.0;
   for (int k = 0; k < c.count; ++k) own += c.w[k] * static_cast<double>(column[c.node[k] - window_first_]);
@@ -114,7 +115,7 @@ bool ContactSet::make_columns(const ContactMetric& metric, TickTime& time) noexc
   Pieces pieces(time);
   for (int k = 0; k < rows_; ++k, column += stride_) {
     if (!pieces.allow(100 + static_cast<long>(stride_))) return false;
-    make_column(contacts_[static_cast<std::size_t>(k)], metric, column);
+    make_column(contacts_[k], metric, column);
   }
   return time.allows();
 }
@@ -126,7 +127,7 @@ void ContactSet::sweep(const Vec* v, TickTime& time) noexcept {
   const float* column = columns_.data();
   for (int index = 0; index < rows_ && pieces.allow(price::row_of_pass(static_cast<long>(stride_)));
        ++index, column += stride_) {  // a sweep cut off by the clock is still a valid sweep of fewer rows
-    Contact& c = contacts_[static_cast<std::size_t>(index)];
+    Contact& c = contacts_[index];
     Vec u = swept_.mix(c.place, c.weight, c.count) - c.surface;
     if constexpr (Turns) u += turning_.slip(index);
     const double un = dot(u, c.n), pn_before = dot(c.p, c.n);
@@ -145,7 +146,7 @@ void ContactSet::sweep(const Vec* v, TickTime& time) noexcept {
     if (!c.loaded) c.loaded = true, loaded_.push_back(index), residual_[loaded_.size() - 1] = Vec{};
     const Vec delta = p - c.p;
     c.p = p;
-    for (int j = 0; j < c.count; ++j) extra_[static_cast<std::size_t>(c.node[j])] += c.w[j] * delta;
+    for (int j = 0; j < c.count; ++j) extra_[c.node[j]] += c.w[j] * delta;
     swept_.push(column, stride_, delta);
     if constexpr (Turns) turning_.push(index, delta);
   }
@@ -157,12 +158,11 @@ template <bool Turns>
 void ContactSet::start(BandSolver& solver, const Numerics& numerics, double dt_s, Vec* v) noexcept {
   const double longer = per_second_ > 0.0 ? dt_s * per_second_ : 1.0;  // ratio of time steps, to keep the same forces
   per_second_ = 1.0 / dt_s;
-  if constexpr (Turns) turning_.prepare(contacts_.data(), rows_, segments_, radius_m_, *spin_);
   solver.solve(window_first_, window_last_, nullptr, v, true);
   clear_extra();
   loaded_.clear();
   for (int k = 0; k < rows_; ++k) {
-    Contact& c = contacts_[static_cast<std::size_t>(k)];
+    Contact& c = contacts_[k];
     c.soft = numerics.recovery / (numerics.contact_N_per_m * dt_s * dt_s);
     c.target = -(c.gap_m > 0.0 ? 1.0 : numerics.recovery) * c.gap_m / dt_s;
     c.p = in_cone(longer * c.p, c.n, c.mu);
@@ -170,10 +170,10 @@ void ContactSet::start(BandSolver& solver, const Numerics& numerics, double dt_s
     c.loaded = dot(c.p, c.p) > 0.0;
     if (!c.loaded) continue;
     loaded_.push_back(k);
-    for (int j = 0; j < c.count; ++j) extra_[static_cast<std::size_t>(c.node[j])] += c.w[j] * c.p;
+    for (int j = 0; j < c.count; ++j) extra_[c.node[j]] += c.w[j] * c.p;
   }
   if constexpr (Turns) {
-    for (const auto k : loaded_) turning_.push(k, contacts_[static_cast<std::size_t>(k)].p);
+    for (const auto k : loaded_) turning_.push(k, contacts_[k].p);
   }
   push(solver, v);
 }
@@ -202,12 +202,12 @@ void ContactSet::mix(BandSolver& solver, Vec* v) noexcept {
     Contact& c = loaded(k);
     c.p = in_cone(p_[k], c.n, c.mu);
     const Vec delta = c.p - plain_[k];
-    for (int j = 0; j < c.count; ++j) extra_[static_cast<std::size_t>(c.node[j])] += c.w[j] * delta;
+    for (int j = 0; j < c.count; ++j) extra_[c.node[j]] += c.w[j] * delta;
     if constexpr (Turns) turning_.push(loaded_[k], delta);
   }
   push(solver, v);
   if (merit<Turns>(v) <= plain_merit) return;
-  for (int i = window_first_; i <= window_last_; ++i) v[i] -= step_[static_cast<std::size_t>(i)];
+  for (int i = window_first_; i <= window_last_; ++i) v[i] -= step_[i];
   for (std::size_t k = 0; k < loaded_.size(); ++k) loaded(k).p.v = plain_[k].v;
   if constexpr (Turns) turning_.restore();
   mixing_.restart();
@@ -240,7 +240,7 @@ bool ContactSet::settle(BandSolver& solver, const ContactMetric& metric, const E
 double ContactSet::unsettled_fraction(const Vec* v, double dt_s) const noexcept {
   double share = 1.0;
   for (int k = 0; k < rows_; ++k) {
-    const Contact& c = contacts_[static_cast<std::size_t>(k)];
+    const Contact& c = contacts_[k];
     const double closing_m = -dt_s * dot(velocity<false>(k, v), c.n);
     const double room_m = std::max(c.gap_m, loose_m_per_s() * dt_s);
     if (closing_m > room_m) share = std::min(share, room_m / closing_m);
@@ -270,7 +270,7 @@ template <bool Turns>
 void ContactSet::note_stuck(const Vec* v) noexcept {
   constexpr double kInside = 1.0 - 1e-9;
   for (int k = 0; k < static_cast<int>(contacts_.size()); ++k) {
-    const Contact& c = contacts_[static_cast<std::size_t>(k)];
+    const Contact& c = contacts_[k];
     const double pn = dot(c.p, c.n), most = kInside * c.mu * pn;
     *c.stuck = 0;
     if (pn <= 0.0 || k >= rows_) continue;

@@ -59,8 +59,8 @@ class ContactWork {
   /// The members that an image saves (image.hpp): all but those that each substep computes again.
   [[nodiscard]] static auto members(ContactWork& self) noexcept {
     auto& [watched, awake, due, close, far, measured, near, heads, bins, corner, share, bent, gaps, columns, swept,
-           extra, step, loaded, p, plain, residual, mixing, newton, u, v_start, p_start, turning, spin, segments,
-           radius_m, body_due, stride, first, last, overflow] = self;
+           extra, step, loaded, p, plain, residual, mixing, newton, u, v_start, p_start, turning, body_due, stride,
+           first, last, overflow] = self;
     return std::tie(newton, body_due, first, last, overflow);
   }
 
@@ -108,9 +108,6 @@ class ContactWork {
   ContactNewton newton_;
   std::vector<Vec> u_, v_start_, p_start_;
   Turning turning_;
-  Spin* spin_ = nullptr;
-  int segments_ = 0;
-  double radius_m_ = 0.0;
   std::vector<double> body_due_;  // per body: last measured gap + the thread's travel at that time
   std::size_t stride_ = 0;
   int window_first_ = 0, window_last_ = 1;
@@ -217,8 +214,9 @@ class ContactSet : public ContactMemory, public ContactWork {
   template <bool Friction, bool Turns>
   [[nodiscard]] bool settle(BandSolver& solver, const ContactMetric& metric, const Effort& effort, Vec* v,
                             ContactReport& report) noexcept;
+  /// Call after choose_rows().
   void turn_with(Spin& spin, int segments, double radius_m) noexcept {
-    spin_ = &spin, segments_ = segments, radius_m_ = radius_m;
+    turning_.prepare(contacts_.data(), rows_, segments, radius_m, spin);
   }
 
   /// Call after remeshing: pairs with an impulse move to the segments that now contain their material coordinates.
@@ -253,7 +251,7 @@ class ContactSet : public ContactMemory, public ContactWork {
   [[nodiscard]] const std::vector<Contact>& contacts() const noexcept { return contacts_; }
 
  private:
-  [[nodiscard]] Contact* add() noexcept;
+  [[nodiscard]] Contact* add(double gap_m, double reach_m, double mu, Vec& impulse, char& stuck) noexcept;
   [[nodiscard]] bool find_due(const Motion& motion, double dt_s, Work& work) noexcept;
   template <bool Smooth>
   void measure(const std::int32_t* places, const State& state) noexcept;
@@ -269,7 +267,7 @@ class ContactSet : public ContactMemory, public ContactWork {
   bool take(Candidate& pair, const Measured& measured, const State& state, double mu, ContactReport& report) noexcept;
   [[nodiscard]] bool make_columns(const ContactMetric& metric, TickTime& time) noexcept;
   void make_column(Contact& c, const ContactMetric& metric, float* column) const noexcept;
-  [[nodiscard]] Contact& loaded(std::size_t k) noexcept { return contacts_[static_cast<std::size_t>(loaded_[k])]; }
+  [[nodiscard]] Contact& loaded(std::size_t k) noexcept { return contacts_[loaded_[k]]; }
   /// Does one pass of the sweep solver, without Anderson mixing. @return an upper bound of the largest squared velocity
   /// change.
   template <bool Friction, bool Turns>
@@ -323,7 +321,7 @@ class ContactSet : public ContactMemory, public ContactWork {
 
 template <bool Turns>
 Vec ContactSet::velocity(int k, const Vec* v) const noexcept {
-  Vec u = velocity(contacts_[static_cast<std::size_t>(k)], v);
+  Vec u = velocity(contacts_[k], v);
   if constexpr (Turns) u += turning_.slip(k);
   return u;
 }

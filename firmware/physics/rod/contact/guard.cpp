@@ -30,8 +30,7 @@ struct Share {
   }
   void pair(std::int32_t a, std::int32_t b, double distance, const Motion& m) noexcept {
     distance = std::max(0.0, distance - kRounding_m);
-    const auto p = static_cast<std::size_t>(a), q = static_cast<std::size_t>(b);
-    if (m.rate(p, q) * dt_s <= 0.9 * distance) return;
+    if (m.rate(a, b) * dt_s <= 0.9 * distance) return;
     // The largest relative velocity is that of two ends: those of inner points are convex combinations of these
     const Lanes ends2 = squares(v[b] - v[a], v[b + 1] - v[a], v[b] - v[a + 1], v[b + 1] - v[a + 1]);
     const double most2 = std::max(std::max(ends2[0], ends2[1]), std::max(ends2[2], ends2[3]));
@@ -75,8 +74,7 @@ double ContactSet::safe_fraction(const Motion& motion, const State& state, doubl
 double ContactSet::safe_fraction_of_pairs(const Motion& motion, const State& state, double dt_s) const noexcept {
   Share share{state.x.data(), state.v.data(), dt_s};
   for (const auto& pair : pairs) {
-    const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
-    share.pair(pair.a, pair.b, std::max(0.0, pair.due - motion.gone(a, b) + pair.reach_m), motion);
+    share.pair(pair.a, pair.b, std::max(0.0, pair.due - motion.gone(pair.a, pair.b) + pair.reach_m), motion);
   }
   return share.least;
 }

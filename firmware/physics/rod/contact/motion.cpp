@@ -106,12 +106,8 @@ bool Motion::used_up(double spare_m, double horizon_s, double ahead_s) const noe
 }
 
 double Motion::share_within(double spare_m, double horizon_s, double dt_s) const noexcept {
-  constexpr double kLeast = 1.0 / 1024.0;
-  double share = 1.0;
-  while (share >= kLeast) {
+  for (double share = 1.0; share >= 1.0 / 1024.0; share *= 0.5)
     if (!used_up(spare_m, horizon_s, share * dt_s)) return share;
-    share *= 0.5;
-  }
   return 0.0;
 }
 

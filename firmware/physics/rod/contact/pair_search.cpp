@@ -115,8 +115,7 @@ void BroadPhase::put_back(const PairList& list) const noexcept {
   list.pairs.clear();
   list.groups.clear();
   for (const Kept& k : kept_) {
-    Candidate& pair = list.pairs.emplace_back();
-    pair.a = k.a, pair.b = k.b, pair.impulse = k.impulse, pair.touch = k.touch, pair.stuck = k.stuck;
+    list.pairs.push_back({.a = k.a, .b = k.b, .touch = k.touch, .impulse = k.impulse, .stuck = k.stuck});
   }
 }
 
@@ -203,8 +202,7 @@ bool BroadPhase::blocks(const State& state, const Motion& motion, const Outlook&
   // reach it
   const std::size_t left = state.x.size() - 1 - q * kBlock;
   const unsigned real = left >= kBlock ? ~0U : (1U << left) - 1U;
-  PairGroup group;
-  group.first = static_cast<std::int32_t>(list.pairs.size());
+  const auto first = static_cast<std::int32_t>(list.pairs.size());
   close_count_ = 0;
   for (std::size_t a = p * kBlock; a < std::min((p + 1) * kBlock, state.x.size() - 1); ++a) {
     if (spent_ + kDearest > allowance_) return false;
@@ -214,9 +212,10 @@ bool BroadPhase::blocks(const State& state, const Motion& motion, const Outlook&
     }
   }
   if (!list_close(state, list.pairs)) return false;
-  group.last = static_cast<std::int32_t>(list.pairs.size());
-  group.p = static_cast<std::int32_t>(p), group.q = static_cast<std::int32_t>(q);
-  if (group.last > group.first) list.groups.push_back(group);
+  const auto last = static_cast<std::int32_t>(list.pairs.size());
+  if (last > first)
+    list.groups.push_back(
+        {.first = first, .last = last, .p = static_cast<std::int32_t>(p), .q = static_cast<std::int32_t>(q)});
   return true;
 }
 

@@ -30,11 +30,11 @@ class Turning {
 
   /// Contribution of the segments' rotation to the relative velocity of row k.
   [[nodiscard]] Vec slip(int k) const noexcept {
-    const Row& row = rows_[static_cast<std::size_t>(k)];
+    const Row& row = rows_[k];
     return spin_->rate(row.segment[0]) * row.g[0] + spin_->rate(row.segment[1]) * row.g[1];
   }
   void push(int k, Vec impulse) noexcept {
-    const Row& row = rows_[static_cast<std::size_t>(k)];
+    const Row& row = rows_[k];
     for (int e = 0; e < row.count; ++e) spin_->push(row.segment[e], dot(row.g[e], impulse), first_, last_);
   }
   void save() noexcept { spin_->save(first_, last_); }

@@ -7,35 +7,21 @@
 #include "firmware/physics/nearest_beside.hpp"
 
 namespace ligature::physics::rod {
-namespace {
-
-bool is_held(const State& state, int node) noexcept {
-  for (int h = 0; h < state.hold_count; ++h)
-    if (state.holds[static_cast<std::size_t>(h)].node == node) return true;
-  return false;
-}
-
-}  // namespace
-
 Place nearest_place(const State& state, int node, Vec p) noexcept {
-  const auto position = [&](int i) { return state.x[static_cast<std::size_t>(i)]; };
-  const auto s = [&](int i) { return state.mesh.s[static_cast<std::size_t>(i)]; };
+  const auto position = [&](int i) { return state.x[i]; };
+  const auto s = [&](int i) { return state.mesh.s[i]; };
   const auto nearest = nearest_beside(node, state.nodes(), position, p);
   return {s(node) + nearest.share * (s(nearest.next) - s(node)), nearest.x};
 }
 
 Place Jaws::would_hold(const Rod& rod, int node, Vec tool) const noexcept {
   if (settings_.width_m > 0.0) return nearest_place(rod.state(), node, tool);
-  const auto i = static_cast<std::size_t>(node);
-  return {rod.state().mesh.s[i], rod.state().x[i]};
+  return {rod.state().mesh.s[node], rod.state().x[node]};
 }
 
 void Jaws::close(Rod& rod, int node, Vec tool, const Mat* R_WT) noexcept {
   const State& state = rod.state();
-  const auto n = static_cast<int>(state.x.size());
-  const auto before = static_cast<std::size_t>(std::max(node - 1, 0));
-  const auto after = static_cast<std::size_t>(std::min(node + 1, n - 1));
-  const Vec chord = state.x[after] - state.x[before];
+  const Vec chord = state.x[std::min(node + 1, state.nodes() - 1)] - state.x[std::max(node - 1, 0)];
   along_ = (1.0 / std::max(norm(chord), 1e-12)) * chord;
   s_m_ = would_hold(rod, node, tool).s_m;
   slides_m_per_s_ = 0.0;
@@ -43,13 +29,13 @@ void Jaws::close(Rod& rod, int node, Vec tool, const Mat* R_WT) noexcept {
   roll_hold_ = -1;
   if (turning_) along_T_ = transposed(*R_WT) * along_;
   const bool directed = turning_ && settings_.width_m <= 0.0;  // with a width, several nodes define the direction
-  const Vec target = tool + (state.mesh.s[static_cast<std::size_t>(node)] - s_m_) * along_;
+  const Vec target = tool + (state.mesh.s[node] - s_m_) * along_;
   hold_[0] = rod.grip(node, settings_.stiffness_N_per_m, settings_.damping_N_s_per_m, target, true, directed);
   count_ = hold_[0] >= 0 ? 1 : 0;
 }
 
 void Jaws::open(Rod& rod) noexcept {
-  for (int k = 0; k < count_; ++k) rod.release(hold_[static_cast<std::size_t>(k)]);
+  for (const int h : held()) rod.release(h);
   count_ = 0;
 }
 
@@ -66,41 +52,38 @@ void Jaws::choose(Rod& rod, Vec tool) noexcept {
   if (first > last) std::swap(first, last);  // no node between the jaws: the two nodes around s_c
   first = std::clamp(first, 0, n - 1), last = std::clamp(last, 0, n - 1);
   if (settings_.width_m <= 0.0) {
-    const auto nearer = [&](int k) { return std::abs(s[static_cast<std::size_t>(k)] - s_m_); };
+    const auto nearer = [&](int k) { return std::abs(s[k] - s_m_); };
     first = last = nearer(first) < nearer(last) ? first : last;
   } else if (first == last) {
     (last + 1 < n ? last : first) += last + 1 < n ? 1 : -1;
   }
   std::array<int, kMost> wanted{};
   const int inside = last - first + 1, most = std::min(inside, kMost);
-  for (int k = 0; k < most; ++k)
-    wanted[static_cast<std::size_t>(k)] = most > 1 ? first + k * (inside - 1) / (most - 1) : first;
+  for (int k = 0; k < most; ++k) wanted[k] = most > 1 ? first + k * (inside - 1) / (most - 1) : first;
   const auto end = wanted.begin() + most;
-  const auto leaves = [&](int hold) {
-    return std::find(wanted.begin(), end, state.holds[static_cast<std::size_t>(hold)].node) == end;
-  };
+  const auto leaves = [&](int hold) { return std::find(wanted.begin(), end, state.holds[hold].node) == end; };
   const auto let_go = [&](int* hold) {
     rod.release(*hold);
-    *hold = hold_[static_cast<std::size_t>(--count_)];
+    *hold = hold_[--count_];
   };
   // One of the holds also fixes the roll. If that hold's node leaves the jaws, it is released last: first a new hold
   // takes over the roll, so that the thread keeps its twist.
   int* keeper = hold_.data();
   for (int* hold = hold_.data(); hold != hold_.data() + count_; ++hold)
-    if (state.holds[static_cast<std::size_t>(*hold)].holds_roll) keeper = hold;
+    if (state.holds[*hold].holds_roll) keeper = hold;
   std::swap(*keeper, hold_[0]);
   const bool passes_on = leaves(hold_[0]);
   for (int* hold = hold_.data() + count_ - 1; hold != hold_.data(); --hold)
     if (passes_on || leaves(*hold)) let_go(hold);
   for (auto node = wanted.begin(); node != end && count_ < kMost; ++node) {
-    if (is_held(state, *node)) continue;
-    const Vec target = tool + (s[static_cast<std::size_t>(*node)] - s_m_) * along_;
+    if (state.is_held(*node)) continue;
+    const Vec target = tool + (s[*node] - s_m_) * along_;
     const int h = rod.grip(*node, 0.0, 0.0, target, passes_on && count_ == 1);
-    if (h >= 0) hold_[static_cast<std::size_t>(count_++)] = h;
+    if (h >= 0) hold_[count_++] = h;
   }
   if (passes_on && count_ > 1) let_go(hold_.data());
-  for (int k = 0; k < count_; ++k) {
-    Hold& hold = rod.state().holds[static_cast<std::size_t>(hold_[static_cast<std::size_t>(k)])];
+  for (const int h : held()) {
+    Hold& hold = rod.state().holds[h];
     hold.stiffness_N_per_m = settings_.stiffness_N_per_m / count_;
     hold.damping_N_s_per_m = settings_.damping_N_s_per_m / count_;
   }
@@ -111,9 +94,8 @@ void Jaws::slip(Rod& rod, Vec tool) noexcept {
   if (settings_.slip_N <= 0.0 || count_ == 0) return;
   const State& state = rod.state();
   double stretch_m = 0.0;  // mean distance of the nodes from their targets, along t
-  for (int k = 0; k < count_; ++k) {
-    const auto node =
-        static_cast<std::size_t>(state.holds[static_cast<std::size_t>(hold_[static_cast<std::size_t>(k)])].node);
+  for (const int h : held()) {
+    const int node = state.holds[h].node;
     stretch_m += (dot(state.x[node] - tool, along_) - (state.mesh.s[node] - s_m_)) / count_;
   }
   const double most_m = settings_.slip_N / settings_.stiffness_N_per_m;
@@ -125,9 +107,8 @@ void Jaws::slip(Rod& rod, Vec tool) noexcept {
 // Turns the held thread's direction, and its director (which fixes the roll), with the tool.
 void Jaws::turn(Rod& rod, const Mat& R_WT) noexcept {
   along_ = R_WT * along_T_;
-  for (int k = 0; k < count_; ++k) {
-    const int h = hold_[static_cast<std::size_t>(k)];
-    const Hold& hold = rod.state().holds[static_cast<std::size_t>(h)];
+  for (const int h : held()) {
+    const Hold& hold = rod.state().holds[h];
     if (!hold.holds_roll && !hold.directed) continue;
     if (h != roll_hold_) director_T_ = transposed(R_WT) * hold.director, roll_hold_ = h;
     rod.steer(h, R_WT * director_T_, along_);
@@ -141,30 +122,19 @@ void Jaws::follow(Rod& rod, Vec tool, std::array<Vec, kMaxHolds>& goals, const M
     slip(rod, tool);
     choose(rod, tool);
   }
-  for (int k = 0; k < count_; ++k) {
-    const auto h = static_cast<std::size_t>(hold_[static_cast<std::size_t>(k)]);
-    const auto node = static_cast<std::size_t>(rod.state().holds[h].node);
-    goals[h] = tool + (rod.state().mesh.s[node] - s_m_) * along_;
-  }
+  for (const int h : held()) goals[h] = tool + (rod.state().mesh.s[rod.state().holds[h].node] - s_m_) * along_;
 }
 
 int Jaws::middle(const Rod& rod) const noexcept {
-  const auto off = [&](int hold) {
-    const auto node = static_cast<std::size_t>(rod.state().holds[static_cast<std::size_t>(hold)].node);
-    return std::abs(rod.state().mesh.s[node] - s_m_);
-  };
-  int best = hold_[0];
-  for (int k = 1; k < count_; ++k)
-    if (off(hold_[static_cast<std::size_t>(k)]) < off(best)) best = hold_[static_cast<std::size_t>(k)];
-  return best;
+  const State& state = rod.state();
+  return std::ranges::min(held(), {}, [&](int h) { return std::abs(state.mesh.s[state.holds[h].node] - s_m_); });
 }
 
 Vec Jaws::place(const Rod& rod) const noexcept {
   const State& state = rod.state();
   Vec mean{};
-  for (int k = 0; k < count_; ++k) {
-    const auto node =
-        static_cast<std::size_t>(state.holds[static_cast<std::size_t>(hold_[static_cast<std::size_t>(k)])].node);
+  for (const int h : held()) {
+    const int node = state.holds[h].node;
     mean += (1.0 / count_) * (state.x[node] - (state.mesh.s[node] - s_m_) * along_);
   }
   return mean;
@@ -173,17 +143,13 @@ Vec Jaws::place(const Rod& rod) const noexcept {
 Vec Jaws::velocity(const Rod& rod) const noexcept {
   const State& state = rod.state();
   Vec mean = slides_m_per_s_ * along_;
-  for (int k = 0; k < count_; ++k) {
-    const int node = state.holds[static_cast<std::size_t>(hold_[static_cast<std::size_t>(k)])].node;
-    mean += (1.0 / count_) * state.v[static_cast<std::size_t>(node)];
-  }
+  for (const int h : held()) mean += (1.0 / count_) * state.v[state.holds[h].node];
   return mean;
 }
 
 Vec Jaws::force(const Rod& rod) const noexcept {
   Vec sum{};
-  for (int k = 0; k < count_; ++k)
-    sum += rod.state().holds[static_cast<std::size_t>(hold_[static_cast<std::size_t>(k)])].force;
+  for (const int h : held()) sum += rod.state().holds[h].force;
   return sum;
 }
 

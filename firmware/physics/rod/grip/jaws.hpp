@@ -2,6 +2,7 @@
 // A hand's jaws on a rod: decides which nodes they hold, in which direction, and when the thread slips through.
 
 #include <array>
+#include <span>
 
 #include "firmware/physics/members.hpp"
 #include "firmware/physics/rod/rod.hpp"
@@ -64,6 +65,7 @@ class Jaws {
   LIGATURE_MEMBERS(Jaws, settings, hold, count, s_m, slides_m_per_s, along, turning, roll_hold, along_T, director_T)
 
  private:
+  [[nodiscard]] std::span<const int> held() const noexcept { return {hold_.data(), static_cast<std::size_t>(count_)}; }
   void choose(Rod& rod, Vec tool) noexcept;
   void slip(Rod& rod, Vec tool) noexcept;
   void turn(Rod& rod, const Mat& R_WT) noexcept;

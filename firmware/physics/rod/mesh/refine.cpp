@@ -12,18 +12,6 @@ namespace {
 constexpr double kCut = 0.5;         // share of a segment that the smooth curve cuts off at a corner (h, smooth.hpp)
 constexpr double kLeastFade = 1e-3;  // > 0, as Spin::before_fading() divides by the factor
 
-// Opens a free place at index `at` in an array, or closes it again, by shifting the array's tail by one place. The
-// array's size stays the same.
-template <class T>
-void open_slot(std::vector<T>& array, std::size_t at) noexcept {
-  std::move_backward(array.begin() + static_cast<std::ptrdiff_t>(at), array.end() - 1, array.end());
-}
-template <class T>
-void close_slot(std::vector<T>& array, std::size_t at) noexcept {
-  std::move(array.begin() + static_cast<std::ptrdiff_t>(at) + 1, array.end(),
-            array.begin() + static_cast<std::ptrdiff_t>(at));
-}
-
 // A segment of the initial mesh. Segments are ordered by the ratio of length to wanted length, then by nearness to the
 // thread's middle.
 struct Piece {
@@ -52,13 +40,6 @@ Vec mean_velocity(const State& state) noexcept {
   double mass = 0.0;
   for (std::size_t i = 0; i < state.v.size(); ++i) sum += state.mesh.mass[i] * state.v[i], mass += state.mesh.mass[i];
   return (1.0 / mass) * sum;
-}
-
-template <class F>
-void every_array(State& s, F f) noexcept {
-  f(s.x);
-  f(s.v);
-  f(s.load);
 }
 
 }  // namespace
@@ -110,12 +91,10 @@ void Refine::want(const State& state, const Forces& forces, const ContactSet& co
     wanted_[i] = std::min(wanted_[i], length);
     if (dot(state.load[i], state.load[i]) > 0.0) free_[i] = 0;
   }
-  for (int h = 0; h < state.hold_count; ++h) {
-    const int node = state.holds[static_cast<std::size_t>(h)].node;
-    if (node >= 0) free_[static_cast<std::size_t>(node)] = 0;
-  }
+  for (const Hold& hold : state.slots())
+    if (hold.node >= 0) free_[hold.node] = 0;
   for (const auto& c : contacts.contacts()) {
-    for (int k = 0; k < c.count; ++k) free_[static_cast<std::size_t>(c.node[k])] = 0;
+    for (int k = 0; k < c.count; ++k) free_[c.node[k]] = 0;
     const double force = norm(c.p) * contacts.per_second();
     if (force == 0.0) continue;
     for (int k = 0; k < std::min(c.count, 4); k += 2) {
@@ -146,11 +125,11 @@ void Refine::want_at_rest(const State& state, const ContactSet& contacts) noexce
   for (const auto& c : contacts.contacts()) {
     if (!c.is_pair() || dot(c.p, c.p) == 0.0) continue;
     Vec u{};
-    for (int k = 0; k < c.count; ++k) u += c.w[k] * state.v[static_cast<std::size_t>(c.node[k])];
+    for (int k = 0; k < c.count; ++k) u += c.w[k] * state.v[c.node[k]];
     u -= dot(u, c.n) * c.n;
     if (dot(u, u) > loose_m_per_s() * loose_m_per_s()) continue;
-    double& one = wanted_[static_cast<std::size_t>(c.node[0])];
-    double& other = wanted_[static_cast<std::size_t>(c.node[2])];
+    double& one = wanted_[c.node[0]];
+    double& other = wanted_[c.node[2]];
     const double least = std::max(unit_m_, std::min(one, other));
     one = other = least > unit_m_ ? least : tuning.first * unit_m_;
   }
@@ -193,27 +172,19 @@ void Refine::merge(const Material& material, State& state, int node) noexcept {
   tension_[i - 1] = 0.5 * (tension_[i - 1] + tension_[i]);
   state.cut_before[i - 1] *= 0.5;  // the same length, as a share of a segment twice as long
   state.cut_after[i - 1] = 0.5 * state.cut_after[i];
-  close_slot(state.cut_before, i);
-  close_slot(state.cut_after, i);
-  close_slot(tension_, i);
-  close_slot(moment_, i);
-  close_slot(at_, i);
-  close_slot(wanted_, i);
-  close_slot(free_, i);
-  close_slot(state.mesh.s, i);
-  every_array(state, [&](auto& array) { close_slot(array, i); });
-  for (int h = 0; h < state.hold_count; ++h) {
-    auto& hold = state.holds[static_cast<std::size_t>(h)];
-    if (hold.node > node) --hold.node;
-  }
+  const auto erase = [at = static_cast<std::ptrdiff_t>(i)](auto&... arrays) {
+    (arrays.erase(arrays.begin() + at), ...);
+  };
+  erase(at_, wanted_, free_, tension_, moment_);
+  erase(state.cut_before, state.cut_after, state.mesh.s, state.x, state.v, state.load);
+  for (Hold& hold : state.slots()) hold.node -= hold.node > node;
 }
 
 // Inserts a node in the middle of a segment's chord.
 void Refine::split(State& state, int segment) noexcept {
   const auto j = static_cast<std::size_t>(segment), i = j + 1;
-  const auto insert = [&](auto& array, auto value) {
-    open_slot(array, i);
-    array[i] = value;
+  const auto insert = [&](auto& array, auto value) {  // never allocates: merge() has made room
+    array.insert(array.begin() + static_cast<std::ptrdiff_t>(i), value);
   };
   insert(at_, (at_[j] + at_[i]) / 2);
   insert(state.mesh.s, unit_m_ * at_[i]);
@@ -228,10 +199,7 @@ void Refine::split(State& state, int segment) noexcept {
   insert(tension_, tension_[j]);
   insert(wanted_, wanted_[j]);
   insert(free_, char{1});
-  for (int h = 0; h < state.hold_count; ++h) {
-    auto& hold = state.holds[static_cast<std::size_t>(h)];
-    if (hold.node > segment) ++hold.node;
-  }
+  for (Hold& hold : state.slots()) hold.node += hold.node > segment;
 }
 
 // Computes the factors by which the offsets (stress-free bends and strains that remeshing has left) fade. An offset is
@@ -301,7 +269,7 @@ bool Refine::update(const Material& material, State& state, const Forces& forces
     const int node = bad > 1.0 ? cheapest_merge(bad / tuning.worth) : -1;
     if (node < 0 || segment == node || segment + 1 == node) break;
     if (!merge_is_clear(material, state, bodies, static_cast<std::size_t>(node))) {
-      free_[static_cast<std::size_t>(node)] = 0;
+      free_[node] = 0;
       continue;
     }
     if (!changed) {

@@ -71,8 +71,7 @@ void vertices(const State& state, Forces& f) noexcept {
       f.moment_out[i] += f.shortening[i] * half;
     }
   }
-  for (int h = 0; h < state.hold_count; ++h) {
-    const Hold& hold = state.holds[static_cast<std::size_t>(h)];
+  for (const Hold& hold : state.slots()) {
     if (hold.node < 0 || !hold.directed) continue;
     const auto i = static_cast<std::size_t>(hold.node);
     const Vec d = hold.direction;
@@ -89,8 +88,7 @@ void vertices(const State& state, Forces& f) noexcept {
 }
 
 void add_holds(const State& state, double dt, BandSolver& a) noexcept {
-  for (int h = 0; h < state.hold_count; ++h) {
-    const Hold& hold = state.holds[static_cast<std::size_t>(h)];
+  for (const Hold& hold : state.slots()) {
     if (hold.node < 0) continue;
     const auto i = static_cast<std::size_t>(hold.node);
     if (hold.rigid) {
@@ -159,8 +157,7 @@ Energy energy(const Material& material, const State& state, Vec gravity) noexcep
     const Vec q = state.elastic_bend(i);
     e.bend_J += 0.5 * mesh.weight[i] * dot(q, q);
   }
-  for (int h = 0; h < state.hold_count; ++h) {
-    const Hold& hold = state.holds[static_cast<std::size_t>(h)];
+  for (const Hold& hold : state.slots()) {
     if (hold.node < 0 || !hold.directed) continue;
     const auto i = static_cast<std::size_t>(hold.node);
     const auto half = [&](std::size_t j, double EI_N_m2) {

@@ -57,7 +57,7 @@ class Spin {
   double yield(const Material& material, State& state) noexcept;
   /// Plastic bend z_i of a vertex, as a change of the unit tangent: how far the friction slider of the plastic model
   /// has moved (spin_set.cpp). The stress-free bend has changed by set_fraction x z_i.
-  [[nodiscard]] Vec set(int vertex) const noexcept { return set_[static_cast<std::size_t>(vertex)]; }
+  [[nodiscard]] Vec set(int vertex) const noexcept { return set_[vertex]; }
 
   /// Sets up and solves a substep's system for the roll rates w_j, without torques of contacts.
   void assemble(const Material& material, const State& state, double dt_s) noexcept;
@@ -66,10 +66,10 @@ class Spin {
   void advance(const Material& material, State& state, Forces& forces, double dt_s) noexcept;
 
   /// Roll rate, rad/s, and tangent of a segment, for contacts. Valid between assemble() and advance().
-  [[nodiscard]] double rate(int segment) const noexcept { return rate_[static_cast<std::size_t>(segment)]; }
-  [[nodiscard]] Vec tangent(int segment) const noexcept { return tangent_[static_cast<std::size_t>(segment)]; }
+  [[nodiscard]] double rate(int segment) const noexcept { return rate_[segment]; }
+  [[nodiscard]] Vec tangent(int segment) const noexcept { return tangent_[segment]; }
   /// Change of a segment's rate per unit torque impulse on it, 1/(kg m^2).
-  [[nodiscard]] double answer(int segment) const noexcept { return answer_[static_cast<std::size_t>(segment)]; }
+  [[nodiscard]] double answer(int segment) const noexcept { return answer_[segment]; }
   /// Applies a torque impulse to a segment, N m s, and updates the rates of all segments in [first, last].
   void push(int segment, double torque_Nms, int first, int last) noexcept;
   /// Saves and restores rates and torque impulses of the segments first to last.

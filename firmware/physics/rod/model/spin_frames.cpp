@@ -36,13 +36,13 @@ void Spin::start(const Material& material, State& state) noexcept {
     middle_m_[j] = 0.5 * (state.mesh.s[j] + state.mesh.s[j + 1]);
   }
   for (int h = 0; h < state.hold_count; ++h)
-    if (state.holds[static_cast<std::size_t>(h)].holds_roll) attach(state, h);
+    if (state.holds[h].holds_roll) attach(state, h);
   std::fill(set_.begin(), set_.end(), Vec{});
   if (material.has_shape()) bear(material, state, false);
 }
 
 void Spin::attach(State& state, int hold) const noexcept {
-  Hold& h = state.holds[static_cast<std::size_t>(hold)];
+  Hold& h = state.holds[hold];
   const auto i = static_cast<std::size_t>(h.node);
   const std::size_t edges = state.x.size() - 1;
   Vec sum{};
@@ -110,10 +110,8 @@ void Spin::measure(const State& state, double tick_s, bool remeshed) noexcept {
   const std::size_t edges = state.x.size() - 1;
   std::swap(held_, was_held_);
   std::fill(held_.begin(), held_.end(), char{0});
-  for (int h = 0; h < state.hold_count; ++h) {
-    const Hold& hold = state.holds[static_cast<std::size_t>(h)];
-    if (hold.node >= 0 && hold.holds_roll)
-      measure_hold(state, hold, tick_s, remeshed || !was_held_[static_cast<std::size_t>(hold.node)]);
+  for (const Hold& hold : state.slots()) {
+    if (hold.node >= 0 && hold.holds_roll) measure_hold(state, hold, tick_s, remeshed || !was_held_[hold.node]);
   }
   for (std::size_t i = 1; i < edges; ++i) {
     if (held_[i]) continue;

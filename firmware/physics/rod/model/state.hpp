@@ -1,8 +1,10 @@
 #pragma once
 // State of a rod: positions, velocities, holds, and the internal forces of the last substep. Allocated once.
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "firmware/physics/members.hpp"
@@ -42,6 +44,16 @@ struct State {
   int hold_count = 0;
 
   [[nodiscard]] int nodes() const noexcept { return mesh.nodes(); }
+  /// Holds, among them unused slots.
+  [[nodiscard]] std::span<Hold> slots() noexcept {
+    return std::span(holds).first(static_cast<std::size_t>(hold_count));
+  }
+  [[nodiscard]] std::span<const Hold> slots() const noexcept {
+    return std::span(holds).first(static_cast<std::size_t>(hold_count));
+  }
+  [[nodiscard]] bool is_held(int node) const noexcept {
+    return std::ranges::any_of(slots(), [&](const Hold& hold) { return hold.node == node; });
+  }
   /// Tangent of segment j, with its stretch: length l / l_rest.
   [[nodiscard]] Vec tangent(std::size_t j) const noexcept { return mesh.inv_rest[j] * (x[j + 1] - x[j]); }
   /// Strain l / l_rest - 1 of segment j, and without its stress-free part.

@@ -1,5 +1,6 @@
 #include "firmware/physics/rod/model/twist.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -9,7 +10,7 @@ namespace {
 // The director of hold `from`, parallel-transported along the centreline to hold `to`.
 Vec carried(const State& state, const Hold& from, const Hold& to) noexcept {
   Vec u = from.director, t = from.tangent;
-  for (auto j = static_cast<std::size_t>(from.node); j < static_cast<std::size_t>(to.node); ++j) {
+  for (int j = from.node; j < to.node; ++j) {
     const Vec e = edge(state, j);
     u = transport(u, t, e);
     t = e;
@@ -17,7 +18,7 @@ Vec carried(const State& state, const Hold& from, const Hold& to) noexcept {
   return transport(u, t, to.tangent);
 }
 
-const Hold& hold_of(const State& state, int k) noexcept { return state.holds[static_cast<std::size_t>(k)]; }
+const Hold& hold_of(const State& state, int k) noexcept { return state.holds[k]; }
 
 }  // namespace
 
@@ -39,52 +40,50 @@ void Twist::roll(Hold& hold, double angle_rad) noexcept {
 }
 
 void Twist::attach(State& state, int hold) noexcept {
-  Hold& h = state.holds[static_cast<std::size_t>(hold)];
+  Hold& h = state.holds[hold];
   h.holds_roll = true;
   h.tangent = tangent_at(state, h);
   int k = 0;
-  while (k < count_ && hold_of(state, order_[static_cast<std::size_t>(k)]).node < h.node) ++k;
-  const auto at = static_cast<std::size_t>(k);
-  for (auto i = static_cast<std::size_t>(count_); i > at; --i) {
-    order_[i] = order_[i - 1];
-    turn_[i] = turn_[i - 1];
-  }
-  order_[at] = hold;
+  while (k < count_ && hold_of(state, order_[k]).node < h.node) ++k;
+  const auto insert = [&](auto& array, auto value) {
+    std::copy_backward(array.begin() + k, array.begin() + count_, array.begin() + count_ + 1);
+    array[k] = value;
+  };
+  insert(order_, hold);
+  insert(turn_, 0.0);
   ++count_;
-  turn_[at] = 0.0;
   const Vec any = std::abs(h.tangent[0]) < 0.7 ? make(1, 0, 0) : make(0, 1, 0);
   h.director = unit(cross(h.tangent, any));
   if (k == 0 || k + 1 == count_) {  // first or last hold: the new span starts untwisted
-    if (k > 0) h.director = carried(state, hold_of(state, order_[at - 1]), h), turn_[at - 1] = 0.0;
+    if (k > 0) h.director = carried(state, hold_of(state, order_[k - 1]), h), turn_[k - 1] = 0.0;
     if (k == 0 && count_ > 1) turn_[0] = raw_turn(state, order_[0], order_[1]), roll(h, turn_[0]), turn_[0] = 0.0;
     return;
   }
-  const Hold& a = hold_of(state, order_[at - 1]);
-  const Hold& b = hold_of(state, order_[at + 1]);
-  const auto s = [&](const Hold& g) { return state.mesh.s[static_cast<std::size_t>(g.node)]; };
-  const double whole = turn_[at - 1], share = whole * (s(h) - s(a)) / (s(b) - s(a));
+  const Hold& a = hold_of(state, order_[k - 1]);
+  const Hold& b = hold_of(state, order_[k + 1]);
+  const auto s = [&](const Hold& g) { return state.mesh.s[g.node]; };
+  const double whole = turn_[k - 1], share = whole * (s(h) - s(a)) / (s(b) - s(a));
   h.director = carried(state, a, h);
   roll(h, share);
-  turn_[at - 1] = share;
-  turn_[at] = whole - share;
+  turn_[k - 1] = share;
+  turn_[k] = whole - share;
 }
 
 void Twist::detach(State& state, int hold) noexcept {
-  state.holds[static_cast<std::size_t>(hold)].holds_roll = false;
+  state.holds[hold].holds_roll = false;
   int k = 0;
-  while (k < count_ && order_[static_cast<std::size_t>(k)] != hold) ++k;
+  while (k < count_ && order_[k] != hold) ++k;
   if (k == count_) return;
-  if (k > 0) turn_[static_cast<std::size_t>(k - 1)] += turn_[static_cast<std::size_t>(k)];
-  for (auto i = static_cast<std::size_t>(k); i + 1 < static_cast<std::size_t>(count_); ++i) {
-    order_[i] = order_[i + 1];
-    turn_[i] = turn_[i + 1];
-  }
+  if (k > 0) turn_[k - 1] += turn_[k];
+  const auto erase = [&](auto& array) { std::copy(array.begin() + k + 1, array.begin() + count_, array.begin() + k); };
+  erase(order_);
+  erase(turn_);
   --count_;
 }
 
 void Twist::carry(State& state) const noexcept {
   for (int k = 0; k < count_; ++k) {
-    Hold& h = state.holds[static_cast<std::size_t>(order_[static_cast<std::size_t>(k)])];
+    Hold& h = state.holds[order_[k]];
     const Vec now = tangent_at(state, h);
     const Vec u = h.steered ? h.steer : transport(h.director, h.tangent, now);
     h.director = unit(u - dot(u, now) * now);
@@ -97,16 +96,13 @@ void Twist::update(const Material& material, State& state, Forces& forces) noexc
   for (auto& m : forces.twist_moment) m = 0.0;
   carry(state);
   for (int k = 0; k + 1 < count_; ++k) {
-    const auto at = static_cast<std::size_t>(k);
-    const Hold& a = hold_of(state, order_[at]);
-    const Hold& b = hold_of(state, order_[at + 1]);
-    const double raw = raw_turn(state, order_[at], order_[at + 1]);
-    turn_[at] += std::remainder(raw - turn_[at], 2.0 * std::numbers::pi);
-    const auto from = static_cast<std::size_t>(a.node), to = static_cast<std::size_t>(b.node);
+    const double raw = raw_turn(state, order_[k], order_[k + 1]);
+    turn_[k] += std::remainder(raw - turn_[k], 2.0 * std::numbers::pi);
+    const int from = hold_of(state, order_[k]).node, to = hold_of(state, order_[k + 1]).node;
     const double span_m = state.mesh.s[to] - state.mesh.s[from];
-    moment_[at] = material.GJ_N_m2 * turn_[at] / span_m;
-    energy_J_ += 0.5 * moment_[at] * turn_[at];
-    for (std::size_t i = from; i <= to; ++i) forces.twist_moment[i] = moment_[at];
+    moment_[k] = material.GJ_N_m2 * turn_[k] / span_m;
+    energy_J_ += 0.5 * moment_[k] * turn_[k];
+    for (int i = from; i <= to; ++i) forces.twist_moment[i] = moment_[k];
   }
 }
 

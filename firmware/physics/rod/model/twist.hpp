@@ -35,8 +35,8 @@ class Twist {
   void update(const Material& material, State& state, Forces& forces) noexcept;
 
   [[nodiscard]] double energy_J() const noexcept { return energy_J_; }
-  [[nodiscard]] double turn_rad(int span) const noexcept { return turn_[static_cast<std::size_t>(span)]; }
-  [[nodiscard]] double moment_Nm(int span) const noexcept { return moment_[static_cast<std::size_t>(span)]; }
+  [[nodiscard]] double turn_rad(int span) const noexcept { return turn_[span]; }
+  [[nodiscard]] double moment_Nm(int span) const noexcept { return moment_[span]; }
   LIGATURE_MEMBERS(Twist, order, turn, moment, count, energy_J)
 
  private:

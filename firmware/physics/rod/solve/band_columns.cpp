@@ -21,7 +21,7 @@ void BandColumns::take_chain(const BandSolver& solver, std::ptrdiff_t count) noe
   const std::ptrdiff_t at_core = core_ + Lane, away = 2 * Lane - 1;
   put(out_[at_core], -1.0 * transposed(lane<Lane>(solver.core_h_)));
   for (std::ptrdiff_t k = 0; k < count; ++k) {
-    const BandSolver::Step& step = solver.steps_[static_cast<std::size_t>(k)];
+    const BandSolver::Step& step = solver.steps_[k];
     const Mat h = lane<Lane>(step.h), inverse = lane<Lane>(step.s_inverse);
     const std::ptrdiff_t i = at_core + away * (k + 1);
     put(s_inverse_[i], inverse);
@@ -49,7 +49,7 @@ void BandColumns::take(const BandSolver& solver, int first, int last) noexcept {
 }
 
 bool BandColumns::want(std::int32_t node) noexcept {
-  std::int32_t& place = place_[static_cast<std::size_t>(node)];
+  std::int32_t& place = place_[node];
   if (place >= 0) return true;
   if ((wanted_.size() + 1) * stride() > columns_.size()) return false;
   place = static_cast<std::int32_t>(wanted_.size());
@@ -95,10 +95,10 @@ bool BandColumns::make_missing(TickTime& time) noexcept {
   for (; missing() > 0; ++made_) {
     if (!pieces.allow(price::column(width()))) return false;
     const auto single = [](Vec a) { return __builtin_convertvector(a.v, Four); };
-    solve(wanted_[static_cast<std::size_t>(made_)]);
+    solve(wanted_[made_]);
     float* at = columns_.data() + static_cast<std::size_t>(made_) * stride();
     for (std::ptrdiff_t i = 0; i < width(); ++i, at += kBlock)
-      store_four(at, single(x_[i].x)), store_four(at + 4, single(x_[i].y)), store_four(at + 8, single(x_[i].z));
+      store_as(at, single(x_[i].x)), store_as(at + 4, single(x_[i].y)), store_as(at + 8, single(x_[i].z));
   }
   return true;
 }

@@ -44,7 +44,7 @@ class BandColumns {
   /// One column of Z: its 3 x 3 blocks for all nodes of the window. @param node counted from first(). @pre the column
   /// was requested and computed.
   [[nodiscard]] const float* column(std::int32_t node) const noexcept {
-    return columns_.data() + static_cast<std::size_t>(place_[static_cast<std::size_t>(node)]) * stride();
+    return columns_.data() + static_cast<std::size_t>(place_[node]) * stride();
   }
   [[nodiscard]] std::size_t stride() const noexcept {
     return kBlock * ((static_cast<std::size_t>(width()) + 1) & ~std::size_t{1});

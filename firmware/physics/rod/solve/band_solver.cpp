@@ -92,13 +92,11 @@ void BandSolver::factor(int core) noexcept {
   // next node, which is in the other half
   Step &one = step[0], &two = step[1];
   TwoSyms s = eliminate(rows(-1), one, two, pivot, core_h_, y);
-  const Two across{core > 0 ? skip[static_cast<std::size_t>(core) - 1] : 0.0,
-                   core + 2 < n_ ? skip[static_cast<std::size_t>(core)] : 0.0};
+  const Two across{core > 0 ? skip[static_cast<std::size_t>(core) - 1] : 0.0, core + 2 < n_ ? skip[core] : 0.0};
   one.skip = across;
   s = s - swapped((across * across) * one.s_inverse);
   y = y - swapped(across * one.z);
-  between_ =
-      couple[static_cast<std::size_t>(core)] - across[0] * lane<0>(core_h_) - across[1] * transposed(lane<1>(core_h_));
+  between_ = couple[core] - across[0] * lane<0>(core_h_) - across[1] * transposed(lane<1>(core_h_));
   core_inverse_ = inverse_spd(lane<0>(s));
   next_h_ = rod::times_transposed(core_inverse_, between_);
   next_inverse_ = inverse_spd(lane<1>(s) - between_ * next_h_);
@@ -121,7 +119,7 @@ void BandSolver::solve(int first, int last, const Vec* extra, Vec* out, bool bas
     for (std::ptrdiff_t k = count - 1; k >= 0; --k) {
       pull(core - 1 - k, l + 1 + k, step[k].h, step[k + 2].skip);
       two = one;
-      w_[static_cast<std::size_t>(k)] = one = step[k].s_inverse * y;
+      w_[k] = one = step[k].s_inverse * y;
     }
     pull(core, l, core_h_, step[1].skip);
     y = y - swapped(step[0].skip * one);
@@ -134,7 +132,7 @@ void BandSolver::solve(int first, int last, const Vec* extra, Vec* out, bool bas
   Twos one = both(out[core], out[l]), two = swapped(one);
   for (std::ptrdiff_t k = 0; k < count; ++k) {
     Twos w = base ? step[k].z : Twos{};
-    if (extra != nullptr) w = w + w_[static_cast<std::size_t>(k)];
+    if (extra != nullptr) w = w + w_[k];
     const Twos x = substitute(k, w, one, two);
     two = one;
     one = x;
@@ -148,21 +146,14 @@ void BandSolver::solve_outside(int first, int last, Vec* v) const noexcept {
   const std::ptrdiff_t l = core_ + 1, lefts = core_ - first, rights = last - l, n = n_;
   std::ptrdiff_t k = std::min(lefts, rights);
   Twos one = both(v[core_ - k], v[l + k]), two = both(v[l - k], v[core_ + k]);
-  for (; k < std::max(lefts, rights); ++k) {  // one side is still inside the window and already solved
+  for (; k < steps(); ++k) {
     const std::ptrdiff_t i = core_ - 1 - k, j = l + 1 + k;
     const Twos x = substitute(k, step[k].z, one, two);
     if (k >= lefts && i >= 0) v[i] = lane<0>(x);
     if (k >= rights && j < n) v[j] = lane<1>(x);
     two = one;
-    one = both(k < lefts ? v[i] : lane<0>(x), k < rights ? v[j] : lane<1>(x));
-  }
-  for (; k < steps(); ++k) {
-    const std::ptrdiff_t i = core_ - 1 - k, j = l + 1 + k;
-    const Twos x = substitute(k, step[k].z, one, two);
-    if (i >= 0) v[i] = lane<0>(x);
-    if (j < n) v[j] = lane<1>(x);
-    two = one;
-    one = x;
+    // At first, one side is still inside the window and already solved
+    one = k < std::max(lefts, rights) ? both(k < lefts ? v[i] : lane<0>(x), k < rights ? v[j] : lane<1>(x)) : x;
   }
 }
 

@@ -71,7 +71,7 @@ class BandSolver {
   /// Back substitution. @return the solution at step k, from the eliminated right-hand side w and the solutions at step
   /// k - 1 (`one`) and step k - 2 (`two`).
   [[nodiscard]] Twos substitute(std::ptrdiff_t k, const Twos& w, const Twos& one, const Twos& two) const noexcept {
-    const Step& s = steps_[static_cast<std::size_t>(k)];
+    const Step& s = steps_[k];
     const TwoMats& h = k > 0 ? steps_[static_cast<std::size_t>(k) - 1].h : core_h_;
     return less(w - s.skip * (s.s_inverse * two), h, one);
   }

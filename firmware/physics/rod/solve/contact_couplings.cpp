@@ -9,7 +9,7 @@ namespace {
 // Transposes an 8 x 8 block. Its rows are `stride` numbers apart in `from`, and `to_stride` numbers apart in `to`.
 inline void transpose(const float* from, std::size_t stride, float* to, std::size_t to_stride) noexcept {
   Eight row[8], pair[8];
-  for (std::size_t k = 0; k < 8; ++k) row[k] = load_eight(from + k * stride);
+  for (std::size_t k = 0; k < 8; ++k) row[k] = load_as<Eight>(from + k * stride);
   for (std::size_t k = 0; k < 8; k += 2) {
     pair[k] = __builtin_shufflevector(row[k], row[k + 1], 0, 8, 2, 10, 4, 12, 6, 14);
     pair[k + 1] = __builtin_shufflevector(row[k], row[k + 1], 1, 9, 3, 11, 5, 13, 7, 15);
@@ -19,8 +19,8 @@ inline void transpose(const float* from, std::size_t stride, float* to, std::siz
     row[k + 2] = __builtin_shufflevector(pair[k], pair[k + 2], 2, 3, 10, 11, 6, 7, 14, 15);
   }
   for (std::size_t k = 0; k < 4; ++k) {
-    store_eight(to + k * to_stride, __builtin_shufflevector(row[k], row[k + 4], 0, 1, 2, 3, 8, 9, 10, 11));
-    store_eight(to + (k + 4) * to_stride, __builtin_shufflevector(row[k], row[k + 4], 4, 5, 6, 7, 12, 13, 14, 15));
+    store_as(to + k * to_stride, __builtin_shufflevector(row[k], row[k + 4], 0, 1, 2, 3, 8, 9, 10, 11));
+    store_as(to + (k + 4) * to_stride, __builtin_shufflevector(row[k], row[k + 4], 4, 5, 6, 7, 12, 13, 14, 15));
   }
 }
 

@@ -14,10 +14,10 @@ namespace ligature::physics::rod {
 void ContactSet::take_impulses(BandSolver& solver, Vec* v) noexcept {
   clear_extra();
   for (const auto k : newton_.rows()) {
-    Contact& c = contacts_[static_cast<std::size_t>(k)];
-    const Vec p = p_[static_cast<std::size_t>(k)], delta = p - c.p;
+    Contact& c = contacts_[k];
+    const Vec p = p_[k], delta = p - c.p;
     c.p = p;
-    for (int j = 0; j < c.count; ++j) extra_[static_cast<std::size_t>(c.node[j])] += c.w[j] * delta;
+    for (int j = 0; j < c.count; ++j) extra_[c.node[j]] += c.w[j] * delta;
   }
   push(solver, v);
 }
@@ -74,7 +74,7 @@ std::optional<Outcome> ContactSet::step_on(Search& search) noexcept {
     if (error2 < settled2) return std::nullopt;
     if (error2 < best2 && error2 < enough2) {
       best2 = error2;
-      for (const auto k : newton_.rows()) plain_[static_cast<std::size_t>(k)].v = p[k].v;
+      for (const auto k : newton_.rows()) plain_[k].v = p[k].v;
     }
     if (newton_.unknowns() > ContactNewton::kMostUnknowns) return Outcome::kUnsolved;
     const long cost = begins ? price::dense_sweep(newton_.loaded())
@@ -85,7 +85,7 @@ std::optional<Outcome> ContactSet::step_on(Search& search) noexcept {
     if (gone || (best2 < enough2 && report.work + cost > effort.fair)) {
       if (step == 0) return error2 < enough2 ? Outcome::kSettled : wait();
       if (best2 >= enough2 || !search.can_pay(answering + price::read(newton_.loaded()))) return wait();
-      for (const auto k : newton_.rows()) p[k].v = plain_[static_cast<std::size_t>(k)].v;
+      for (const auto k : newton_.rows()) p[k].v = plain_[k].v;
       return std::nullopt;
     }
     report.work += cost;
@@ -137,12 +137,12 @@ Outcome ContactSet::settle_directly(BandSolver& solver, const Effort& effort, Ve
   const Outcome outcome = newton_steps<Friction>(solver, effort, v, report);
   if (outcome == Outcome::kSettled) {
     for (const auto k : newton_.rows()) {
-      Contact& c = contacts_[static_cast<std::size_t>(k)];
+      Contact& c = contacts_[k];
       c.p = in_cone(c.p, c.n, c.mu);
     }
     return outcome;
   }
-  for (int k = 0; k < rows_; ++k) contacts_[static_cast<std::size_t>(k)].p.v = p_start_[static_cast<std::size_t>(k)].v;
+  for (int k = 0; k < rows_; ++k) contacts_[k].p.v = p_start_[k].v;
   std::copy(v_start_.begin(), v_start_.begin() + nodes, v + window_first_);
   return outcome;
 }

@@ -54,10 +54,10 @@ void ContactNewton::start(const Contact* rows, int count) noexcept {
   for (int k = 0; k < count; ++k) {
     const std::int32_t s = find(rows[k].node[0] - z_.first(), rows[k].node[2] - z_.first());
     if (s < 0) continue;
-    Slot& slot = slots_[static_cast<std::size_t>(s)];
+    Slot& slot = slots_[s];
     slot.dead = has_moved(slot, rows[k], z_.first());
     if (slot.dead) continue;
-    slot_[static_cast<std::size_t>(k)] = s;
+    slot_[k] = s;
     slot.row = k;
     rows_.push_back(k);
   }
@@ -74,15 +74,14 @@ void ContactNewton::index_slots() noexcept {
   at_.assign(static_cast<std::size_t>(z_.width()), -1);
   for (std::size_t s = slots_.size(); s-- > 0;) {
     slots_[s].row = -1;
-    slots_[s].next = std::exchange(at_[static_cast<std::size_t>(slots_[s].node[0])], static_cast<std::int32_t>(s));
+    slots_[s].next = std::exchange(at_[slots_[s].node[0]], static_cast<std::int32_t>(s));
   }
 }
 
 // Index of the slot of the contact between segments a and b, or -1.
 std::int32_t ContactNewton::find(std::int32_t a, std::int32_t b) const noexcept {
-  std::int32_t s = at_[static_cast<std::size_t>(a)];
-  while (s >= 0 && (slots_[static_cast<std::size_t>(s)].node[2] != b || slots_[static_cast<std::size_t>(s)].dead))
-    s = slots_[static_cast<std::size_t>(s)].next;
+  std::int32_t s = at_[a];
+  while (s >= 0 && (slots_[s].node[2] != b || slots_[s].dead)) s = slots_[s].next;
   return s;
 }
 
@@ -106,7 +105,7 @@ bool ContactNewton::take(const Contact* rows, int k) noexcept {
   for (int j = 0; j < c.count; ++j) {
     if (!z_.want(c.node[j] - z_.first())) return false;
   }
-  slot_[static_cast<std::size_t>(k)] = static_cast<std::int32_t>(slot);
+  slot_[k] = static_cast<std::int32_t>(slot);
   rows_.push_back(k);
   Slot& made = slots_.emplace_back();
   made.guess.v = c.p.v;
@@ -130,9 +129,9 @@ void ContactNewton::spread(const Slot& slot, std::int32_t first, std::int32_t la
   }
   for (std::size_t j = begin; j < end; j += 8) {
     // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): a contact has at least one node
-    Eight sum = w[0] * load_eight(column[0] + j);
-    for (int k = 1; k < slot.count; ++k) sum += w[k] * load_eight(column[k] + j);
-    store_eight(out + j, sum);
+    Eight sum = w[0] * load_as<Eight>(column[0] + j);
+    for (int k = 1; k < slot.count; ++k) sum += w[k] * load_as<Eight>(column[k] + j);
+    store_as(out + j, sum);
   }
 }
 
@@ -143,7 +142,7 @@ std::array<Four, 3> ContactNewton::answer_at(const Slot& slot) const noexcept {
   for (int j = 0; j < slot.count; ++j) {
     const float* const at = spread_.data() + BandColumns::kBlock * static_cast<std::size_t>(slot.node[j]);
     const auto w = static_cast<float>(slot.w[j]);
-    for (std::size_t i = 0; i < 3; ++i) sum[i] += w * load_four(at + 4 * i);
+    for (std::size_t i = 0; i < 3; ++i) sum[i] += w * load_as<Four>(at + 4 * i);
   }
   return sum;
 }
@@ -195,7 +194,7 @@ bool ContactNewton::look(const Contact* rows, int count, const Vec* p, const Vec
   last2_ = std::numeric_limits<double>::infinity();
   rises_ = 0;
   for (int k = 0; k < count; ++k) {
-    if (slot_[static_cast<std::size_t>(k)] >= 0) continue;
+    if (slot_[k] >= 0) continue;
     const Contact& c = rows[k];
     if (dot(u[k], c.n) >= c.target && dot(p[k], p[k]) == 0.0) continue;
     if (!take(rows, k)) return false;

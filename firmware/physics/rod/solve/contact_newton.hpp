@@ -145,9 +145,7 @@ class ContactNewton {
     float x, y, z;
   };
   bool take(const Contact* rows, int k) noexcept;
-  [[nodiscard]] std::size_t slot_of(std::int32_t row) const noexcept {
-    return static_cast<std::size_t>(slot_[static_cast<std::size_t>(row)]);
-  }
+  [[nodiscard]] std::size_t slot_of(std::int32_t row) const noexcept { return static_cast<std::size_t>(slot_[row]); }
   [[nodiscard]] Vec moved(std::size_t slot) const noexcept {
     const float* const u = on_.data() + on_at(slot);
     return make(u[0], u[kLanes], u[2 * kLanes]);

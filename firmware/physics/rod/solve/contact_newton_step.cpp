@@ -66,9 +66,10 @@ void ContactNewton::answer(std::size_t slot, Vec x, std::size_t other, Vec y) no
   for (std::size_t s = 0; s < count; s += kLanes) {
     const float *v = w_.block(slot, s), *w = w_.block(other, s);
     for (int j = 0; j < 3; ++j, v += kLanes, w += kLanes, out += kLanes) {
-      Eight sum = x0 * load_eight(v) + x1 * load_eight(v + 3 * kLanes) + x2 * load_eight(v + 6 * kLanes);
-      if constexpr (Two) sum += y0 * load_eight(w) + y1 * load_eight(w + 3 * kLanes) + y2 * load_eight(w + 6 * kLanes);
-      store_eight(out, load_eight(out) + sum);
+      Eight sum = x0 * load_as<Eight>(v) + x1 * load_as<Eight>(v + 3 * kLanes) + x2 * load_as<Eight>(v + 6 * kLanes);
+      if constexpr (Two)
+        sum += y0 * load_as<Eight>(w) + y1 * load_as<Eight>(w + 3 * kLanes) + y2 * load_as<Eight>(w + 6 * kLanes);
+      store_as(out, load_as<Eight>(out) + sum);
     }
   }
 }
@@ -94,7 +95,7 @@ void ContactNewton::answer_all(const Vec* change) noexcept {
 void ContactNewton::exchange(std::size_t a, std::size_t b) noexcept {
   std::swap(slots_[a], slots_[b]);
   for (const std::size_t s : {a, b}) {
-    if (slots_[s].row >= 0) slot_[static_cast<std::size_t>(slots_[s].row)] = static_cast<std::int32_t>(s);
+    if (slots_[s].row >= 0) slot_[slots_[s].row] = static_cast<std::int32_t>(s);
   }
   w_.exchange(a, b, slots_.size());
 }
@@ -183,15 +184,15 @@ template <bool Friction>
     const float *const at = w_.block(unknown.slot, s), *const b = with + s;
     const auto plane = [&](std::size_t j) {
       const float* const w = at + j * kLanes;
-      return a0 * load_eight(w) + a1 * load_eight(w + 3 * kLanes) + a2 * load_eight(w + 6 * kLanes);
+      return a0 * load_as<Eight>(w) + a1 * load_as<Eight>(w + 3 * kLanes) + a2 * load_as<Eight>(w + 6 * kLanes);
     };
     const Eight x = plane(0), y = plane(1), z = plane(2);
-    store_eight(row + s, x * load_eight(b) + y * load_eight(b + kPlane) + z * load_eight(b + 2 * kPlane));
+    store_as(row + s, x * load_as<Eight>(b) + y * load_as<Eight>(b + kPlane) + z * load_as<Eight>(b + 2 * kPlane));
     if constexpr (Friction) {
-      store_eight(row + contacts + s,
-                  x * load_eight(b + 3 * kPlane) + y * load_eight(b + 4 * kPlane) + z * load_eight(b + 5 * kPlane));
+      store_as(row + contacts + s, x * load_as<Eight>(b + 3 * kPlane) + y * load_as<Eight>(b + 4 * kPlane) +
+                                       z * load_as<Eight>(b + 5 * kPlane));
       float* const moved = on + 3 * s;
-      store_eight(moved, x), store_eight(moved + kLanes, y), store_eight(moved + 2 * kLanes, z);
+      store_as(moved, x), store_as(moved + kLanes, y), store_as(moved + 2 * kLanes, z);
     }
   }
   float* out = row + (Friction ? 2 : 1) * contacts;
@@ -199,7 +200,7 @@ template <bool Friction>
     const float* const at = on + on_at(stuck.slot);
     *out++ = at[0] * stuck.x + at[kLanes] * stuck.y + at[2 * kLanes] * stuck.z;
   }
-  store_eight(row + n, Eight{});
+  store_as(row + n, Eight{});
   row[i] += static_cast<float>(unknown.give);
 }
 

@@ -17,16 +17,16 @@ inline void take_away(float* a, const float* factors, const float* top, std::siz
   Eight f[std::max<std::size_t>(Rows, 1)];
   for (std::size_t q = 0; q < Rows; ++q) f[q] = all_eight(factors[q]);
   for (std::size_t j = from; j < stride; j += 8) {
-    Eight sum = load_eight(a + j);
-    for (std::size_t q = 0; q < Rows && q < kPanel; ++q) sum -= f[q] * load_eight(top + q * stride + j);
+    Eight sum = load_as<Eight>(a + j);
+    for (std::size_t q = 0; q < Rows && q < kPanel; ++q) sum -= f[q] * load_as<Eight>(top + q * stride + j);
     if constexpr (Rows > kPanel) {  // two independent sums, for latency
-      Eight more = f[kPanel] * load_eight(top + kPanel * stride + j);
-      for (std::size_t q = kPanel + 1; q < Rows; ++q) more += f[q] * load_eight(top + q * stride + j);
+      Eight more = f[kPanel] * load_as<Eight>(top + kPanel * stride + j);
+      for (std::size_t q = kPanel + 1; q < Rows; ++q) more += f[q] * load_as<Eight>(top + q * stride + j);
       sum -= more;
     } else {
       sum *= scale;
     }
-    store_eight(a + j, sum);
+    store_as(a + j, sum);
   }
 }
 
@@ -128,8 +128,8 @@ void Dense::substitute() noexcept {
     for (std::size_t i = 0; i < 2 * kPanel; ++i) rows[i] = row(std::min(k + i, n_ - 1));
     Eight sum[2 * kPanel] = {};
     for (std::size_t j = end & ~std::size_t{7}; j < n_; j += 8) {
-      const Eight at = load_eight(x + j);
-      for (std::size_t i = 0; i < 2 * kPanel; ++i) sum[i] += load_eight(rows[i] + j) * at;
+      const Eight at = load_as<Eight>(x + j);
+      for (std::size_t i = 0; i < 2 * kPanel; ++i) sum[i] += load_as<Eight>(rows[i] + j) * at;
     }
     // The sums run over whole groups of eight columns, so also over columns before `end`. Their unknowns x are still
     // zero and add nothing.

@@ -12,19 +12,16 @@ namespace ligature::physics::rod {
 using Four = float __attribute__((vector_size(16)));
 using Eight = float __attribute__((vector_size(32)));
 
-[[nodiscard]] inline Four load_four(const float* at) noexcept {
-  Four out;
+template <class Register>
+[[nodiscard]] inline Register load_as(const float* at) noexcept {
+  Register out;
   std::memcpy(&out, at, sizeof out);
   return out;
 }
-inline void store_four(float* at, Four value) noexcept { std::memcpy(at, &value, sizeof value); }
-
-[[nodiscard]] inline Eight load_eight(const float* at) noexcept {
-  Eight out;
-  std::memcpy(&out, at, sizeof out);
-  return out;
+template <class Register>
+inline void store_as(float* at, Register value) noexcept {
+  std::memcpy(at, &value, sizeof value);
 }
-inline void store_eight(float* at, Eight value) noexcept { std::memcpy(at, &value, sizeof value); }
 [[nodiscard]] inline Eight all_eight(float a) noexcept { return Eight{a, a, a, a, a, a, a, a}; }
 
 /// Node velocities in blocks of eight nodes: eight x, eight y, eight z. A sweep only approximates the solution with the
@@ -68,10 +65,10 @@ class SweptVelocities {
                 pz = all_eight(static_cast<float>(p[2]));
     float* at = xyz_.data();
     for (std::size_t j = 0; j < nodes; j += 8, at += 24) {
-      const Eight c = load_eight(column + j);
-      store_eight(at, load_eight(at) + c * px);
-      store_eight(at + 8, load_eight(at + 8) + c * py);
-      store_eight(at + 16, load_eight(at + 16) + c * pz);
+      const Eight c = load_as<Eight>(column + j);
+      store_as(at, load_as<Eight>(at) + c * px);
+      store_as(at + 8, load_as<Eight>(at + 8) + c * py);
+      store_as(at + 16, load_as<Eight>(at + 16) + c * pz);
     }
   }
 
