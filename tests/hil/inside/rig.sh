@@ -10,7 +10,7 @@ recorder_s=30                                                 # time that the fl
 hands_priority=85
 
 # As on a rig (docs/deployment.md). By default Linux stops real-time processes for 5 % of each second; from 6.12 on its
-# fair server does so. Once that is off, Linux refuses any value for sched_rt_runtime_us (EBUSY), also the one it has.
+# fair server does so. Only other values are written: with one CPU, Linux 6.12 refused the second -1 (EBUSY).
 write() { [ "$(cat "$2")" = "$1" ] || echo "$1" > "$2"; }  # VALUE FILE
 write -1 /proc/sys/kernel/sched_rt_runtime_us
 fair_server=/sys/kernel/debug/sched/fair_server/cpu
