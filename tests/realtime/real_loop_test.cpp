@@ -195,7 +195,8 @@ int verdict(RealRig& rig) {
   _exit(verdict(rig));
 }
 
-TEST(RealLoop, InForceItAsksTheKernelForBusClockAndTheOneWakeUpOnly) {
+/// @return as waitpid() has it, how the process with the rig ended.
+int status_of_a_rig() {
   const std::string folder = test::temp_folder();
   const std::array hands{start_hand("left", folder), start_hand("right", folder)};
   const pid_t child = fork();
@@ -206,12 +207,23 @@ TEST(RealLoop, InForceItAsksTheKernelForBusClockAndTheOneWakeUpOnly) {
     kill(hand, SIGTERM);
     waitpid(hand, nullptr, 0);
   }
+  return status;
+}
+
+/// On a busy machine samples come in bursts, and the rig ends its force (fault 18). So up to ten rigs try to keep it.
+TEST(RealLoop, InForceItAsksTheKernelForBusClockAndTheOneWakeUpOnly) {
+  int status = 0;
+  for (int rigs = 0; rigs < 10; ++rigs) {
+    status = status_of_a_rig();
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != kNoForce) break;
+  }
   ASSERT_FALSE(WIFSIGNALED(status)) << "ended by signal " << WTERMSIG(status) << ", " << SIGSYS
                                     << " is a system call too many";
   EXPECT_NE(WEXITSTATUS(status), kFaulted) << "a page fault in the loop or in the thread's physics";
   EXPECT_NE(WEXITSTATUS(status), kAllocated) << "one of the two allocates";
   EXPECT_NE(WEXITSTATUS(status), kLocked) << "one of the two locks";
   EXPECT_NE(WEXITSTATUS(status), kKept) << "one of the two keeps denormals";
+  EXPECT_NE(WEXITSTATUS(status), kNoForce) << "no force in " << kWatchedTicks << " ticks";
   EXPECT_EQ(WEXITSTATUS(status), 0);
 }
 
