@@ -22,7 +22,7 @@ struct Heard {
 };
 
 /// Time from set_force() with a new force to the end of the exchange that gave the newest force to the device. This
-/// wait is the delay that the bridge adds to a force.
+/// wait is the delay that the bridge adds to a force. Exchanges that the device did not answer are not counted.
 struct ForceWaits {
   std::int64_t forces = 0;  ///< new forces that reached the device
   Nanoseconds sum{}, worst{};
