@@ -34,13 +34,15 @@ class LengthLimits {
   [[nodiscard]] double passed_N(int segment) const noexcept { return impulse_[segment] / step_s_; }
   void forget() noexcept;
   LIGATURE_MEMBERS(LengthLimits, rest_m, shortest_m, longest_m, step_s, segments, holding, u, length, diag, gain, link,
-                   lambda, impulse, bound)
+                   lambda, impulse, bound, start)
 
  private:
   /// Active limit of a segment: none, the longest or the shortest length.
   enum class Bound : signed char { kInside, kLongest, kShortest };
 
-  [[nodiscard]] bool measure(const ThreadModel& model, const ThreadState& state) noexcept;
+  [[nodiscard]] double measure(const ThreadModel& model, const ThreadState& state) noexcept;
+  void remember(const ThreadModel& model, const ThreadState& state) noexcept;
+  [[nodiscard]] bool is_far(const ThreadModel& model, const ThreadState& state, double outside_m) const noexcept;
   void correct(const ThreadModel& model, ThreadState& state) noexcept;
   void let_go_of_pushed(int segment) noexcept;
   void walk_outwards(const ThreadModel& model, ThreadState& state) noexcept;
@@ -52,6 +54,7 @@ class LengthLimits {
   Lane3 u_;
   Lane length_, diag_, gain_, link_, lambda_, impulse_;
   std::vector<Bound> bound_;
+  ThreadState start_;  // at the start of enforce()
 };
 
 }  // namespace ligature::physics
