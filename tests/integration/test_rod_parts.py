@@ -29,7 +29,7 @@ WORLD = re.compile(r"collect_floor|collect_body|afford_world")
 DRUM = re.compile(r"collect_body<true>")
 RUBS = re.compile(r"settle(_directly)?<true|note_stuck|let_stick")
 
-FULL = ["world.desk_height_m=0.05"]
+FULL = ["world.desk_height_m=0.0484"]
 # A bar far from the thread, whose surface turns.
 TURNS = FULL + ["world.pegs=[{from_m=[0,1,0],to_m=[0,1,1],radius_m=0.01,surface_m_per_s=0.1}]"]
 WITHOUT = {

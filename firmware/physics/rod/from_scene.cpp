@@ -105,6 +105,18 @@ std::string objection_to(const scene::Scene& scene) {
   return {};
 }
 
+/// Reason why the rod cannot start in its present shape, or an empty string. Contact would throw away a thread whose
+/// axis lies below the desk, by hundreds of metres per second.
+std::string objection_to_start(const Rod& rod) {
+  const auto& x = rod.state().x;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (x[i][2] < rod.floor_m)
+      return "suture.initial: found node " + std::to_string(i) +
+             " below world.desk_height_m, the rod model needs a start above the desk";
+  }
+  return {};
+}
+
 }  // namespace
 
 Numerics numerics_of(const scene::Scene& scene) noexcept {
@@ -190,6 +202,9 @@ std::variant<Rod, std::string> rod_of(const scene::Scene& scene) {
     state.x[node] = vec(f.position_m);
   }
   rod.moved();
+  if (parts_of(scene).world && rod.has_floor) {
+    if (auto why = objection_to_start(rod); !why.empty()) return why;
+  }
   return rod;
 }
 

@@ -82,6 +82,8 @@ def rules(folder):
     page = (SOURCE / "docs/scene.md").read_text()
     for scene, settings, says in (
         (rod, ["suture.nodes=3"], "suture.nodes: found 3, the rod model needs 4 or more"),
+        (rod, ["world.desk_height_m=0"],
+         "suture.initial: found node 1 below world.desk_height_m, the rod model needs a start above the desk"),
         (rod, ["contact.solver=paper"], 'contact.solver: found "paper", the rod model has "none" and "implicit"'),
         (rod, ["suture.GJ_N_m2=0", "suture.yield_strain=0.1"], "suture.yield_strain: needs suture.GJ_N_m2 above 0"),
         (rod, [fixed(15)], "world.fixed: found 15 nodes, the rod model takes 14"),
