@@ -2,11 +2,15 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+
+#include "protocol/recorder/flight_file.hpp"
 
 namespace ligature::telemetry {
 namespace {
@@ -24,6 +28,20 @@ bool is_in_use(const std::string& path) {
   return locked;
 }
 
+/// Whether something stands at `path` that no flight recorder wrote: a folder, a device, a link, or another file. A
+/// file that begins with zeros is a recording whose process ended before it wrote the header.
+bool is_foreign(const std::string& path) {
+  struct stat found {};
+  if (lstat(path.c_str(), &found) != 0) return false;
+  if (!S_ISREG(found.st_mode)) return true;
+  std::array<char, recorder::kMagic.size()> begin{};
+  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (fd < 0) return true;
+  const bool is_short = pread(fd, begin.data(), begin.size(), 0) != static_cast<ssize_t>(begin.size());
+  close(fd);
+  return is_short ? found.st_size > 0 : begin != recorder::kMagic && begin != decltype(begin){};
+}
+
 bool write_all(int fd, std::span<const std::byte> bytes, std::size_t at) noexcept {
   while (!bytes.empty()) {
     const auto n = pwrite(fd, bytes.data(), bytes.size(), static_cast<off_t>(at));
@@ -39,6 +57,7 @@ bool write_all(int fd, std::span<const std::byte> bytes, std::size_t at) noexcep
 
 std::variant<std::unique_ptr<FileDisk>, std::string> FileDisk::make(const std::string& path, std::size_t size) {
   if (is_in_use(path)) return "flight recorder " + path + ": another process records into it";
+  if (is_foreign(path)) return "flight recorder " + path + ": is no recording of a flight recorder, name another file";
   std::rename(path.c_str(), (path + ".previous").c_str());  // fails harmlessly if there is no earlier file
   const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
   if (fd < 0) return refusal(path, "cannot be made", errno);

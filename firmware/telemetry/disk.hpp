@@ -25,8 +25,8 @@ class Disk {
 /// which other threads need. Second, a disk error on a mapping would kill the process (SIGBUS).
 class FileDisk final : public Disk {
  public:
-  /// Creates the file; the file of the previous run is kept as FILE.previous. @return the file, or one line that says
-  /// why it failed.
+  /// Creates the file; the file of the previous run is kept as FILE.previous. Anything else at the path is left alone.
+  /// @return the file, or one line that says why it failed.
   [[nodiscard]] static std::variant<std::unique_ptr<FileDisk>, std::string> make(const std::string& path,
                                                                                  std::size_t size);
   ~FileDisk() override;

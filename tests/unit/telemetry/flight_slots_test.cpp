@@ -90,6 +90,21 @@ TEST_F(FlightSlotsTest, RefusesAFolderThatIsNotThereAndADiskThatIsFull) {
   EXPECT_FALSE(std::filesystem::exists(path)) << "half a file was left";
 }
 
+TEST_F(FlightSlotsTest, LeavesAloneWhatNoRecorderWrote) {
+  const std::string notes = folder.file("notes.txt"), link = folder.file("link"), name = folder.file("folder");
+  std::ofstream(notes) << "a user's own notes";
+  std::filesystem::create_symlink(notes, link);
+  std::filesystem::create_directory(name);
+  for (const auto& taken : {notes, link, name}) {
+    EXPECT_TRUE(std::holds_alternative<std::string>(FileDisk::make(taken, 1000))) << taken;
+    EXPECT_TRUE(std::filesystem::exists(std::filesystem::symlink_status(taken))) << taken;
+    EXPECT_FALSE(std::filesystem::exists(std::filesystem::symlink_status(taken + ".previous"))) << taken;
+  }
+  const std::string begun = folder.file("begun");  // its process was killed before it wrote the header
+  std::ofstream(begun) << std::string(1000, '\0');
+  EXPECT_TRUE(std::holds_alternative<std::unique_ptr<FileDisk>>(FileDisk::make(begun, 1000)));
+}
+
 TEST_F(FlightSlotsTest, SavesTheTicksBeforeAFaultAndEndsBeforeTheDiskIsFull) {
   Open file(path, 100);
   EXPECT_EQ(file.slots.save_last(50, 11), "");  // nothing to save yet
