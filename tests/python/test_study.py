@@ -39,7 +39,9 @@ BAD = [
     (RUN + "[parameters]\ncontact.friction = {latin = [0.1, 0.3]}\n", "key 'latin': found no table, allowed 'points'"),
     (RUN + "[latin]\npoints = 4\n", "key 'latin'"), (RUN + "[parameters]\nstatus = [1]\n", "key 'parameters.status': found 'a column that each row has', allowed another name"),
     ("seeds = [1, 1]\n" + RUN, "key 'seeds': found [1, 1]"), ('seeds = "9-1"\n' + RUN, "key 'seeds': found '9-1'"),
-    ("seeds = [1.5]\n" + RUN, "key 'seeds': found 1.5, allowed an integer"), ('seeds = "1-2000000"\n' + RUN, "found '2000000 runs'"),
+    ("seeds = [1.5]\n" + RUN, "key 'seeds': found 1.5, allowed an integer"), ('seeds = "1-2000000"\n' + RUN, "key 'seeds': found '1-2000000', allowed at most 1000000 seeds"),
+    ('seeds = "1-4294967295"\n' + RUN, "at most 1000000 seeds"), ('seeds = "1-2000"\n' + RUN + f"[parameters]\nsuture.nodes = {list(range(10, 1010))}\n", "found '2000000 runs'"),
+    (RUN + "[parameters]\n" + "".join(f"suture.{key} = {{from = 1, to = 2, count = 1000}}\n" for key in "abcdefg"), "runs', allowed at most 1000000"),
     ('measures = ["speed"]\n' + RUN, "key 'measures': found 'speed', allowed one of knot"),
     ('[task]\nkind = "no_such_module:f"\n', "found no module 'no_such_module'"), ('[task]\nkind = "math:nothing"\n', "found no function 'nothing'"),
     (RUN + '[[plot]]\nkind = "map"\nx = "seed"\ny = "width"\n', "key 'plot.y': found 'width', allowed one of run"),
@@ -287,3 +289,12 @@ def test_progress():
     shown.one_more(False)
     shown.one_more(True)
     assert shown.text(10.0) == f"[{'#' * 15:30}] 102 of 200, 1 failed, 8 min 10 s left"
+
+
+def test_a_column_may_hold_numbers_in_one_part_and_texts_in_another(tmp_path):
+    with Store(tmp_path / "out", {"seeds": [1]}, "") as store:
+        for run, value in enumerate((1.5, True, "none", None)):
+            store.add({"run": run, "status": "done", "width": value})
+            store.flush()
+    found = rows(tmp_path / "out").to_pylist()
+    assert [row["width"] for row in found] == ["1.5", "true", "none", None] and [row["run"] for row in found] == [0, 1, 2, 3]

@@ -121,3 +121,15 @@ def test_a_plot_of_a_text_is_refused(tmp_path):
     study.run(tmp_path / "out", workers=1, progress=None)
     with pytest.raises(ligature.Refusal, match="column 'name' of run 0: found '1', allowed a number"):
         study.plot(tmp_path / "out")
+
+
+@pytest.mark.parametrize("plot,says", [
+    ('kind = "threshold"\nover = "name"\nmeasure = "odd"', "column 'name' of run 0: found '1', allowed a number"),
+    ('kind = "threshold"\nover = "x"\nmeasure = "odd"\npanels = ["wide"]', "column 'wide': found none of this name, allowed one of .*square"),
+    ('kind = "map"\nx = "x"\ny = "wide"\nmeasure = "odd"', "column 'wide': found none of this name"),
+])
+def test_a_plot_over_a_text_or_a_missing_column_is_refused(tmp_path, plot, says):
+    study = Study.load(study_file(tmp_path, "square", 2, more=f"[[plot]]\n{plot}\n"))
+    study.run(tmp_path / "out", workers=1, progress=None)
+    with pytest.raises(ligature.Refusal, match=says):
+        study.plot(tmp_path / "out")

@@ -1,6 +1,7 @@
 """What a rig of processes sends over LCM, and the targets for its simulated hands. Runs in a thread of its own."""
 
 import random
+import struct
 import threading
 import time
 
@@ -42,7 +43,7 @@ class Network(threading.Thread):
         while not self._ended:
             try:
                 self._lcm.handle_timeout(5)
-            except (ValueError, EOFError):  # somebody's message that is none of ours
+            except (ValueError, EOFError, struct.error):  # somebody's message that is none of ours
                 continue
             if time.monotonic() >= due_s:
                 due_s = time.monotonic() + WISH_EVERY_S

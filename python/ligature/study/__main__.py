@@ -11,7 +11,7 @@ from ligature.study import Study
 DONE, BAD_INPUT, RUN_FAILED, INTERRUPTED = 0, 2, 3, 130
 ABOUT = """Many runs over parameters and seeds: rows in DIR/rows (Parquet), one for each run. Called again, it does what has
 no row yet, also after it was killed. Keys of STUDY.toml, tasks and columns: docs/studies.md."""
-EXIT = """Exit: 0 done; 2 bad usage or input, nothing written; 3 a run failed, its row has the reason; 130 interrupted,
+EXIT = """Exit: 0 done; 2 bad usage or input, nothing written; 3 a run failed, its row has the reason, or a file could not be written; 130 interrupted,
 finished runs are kept.
 
 Examples
@@ -81,6 +81,9 @@ def main() -> int:
     except Refusal as why:
         print(f"ligature-lab: {why}", file=sys.stderr)
         return BAD_INPUT
+    except OSError as why:  # a disk that is full, a folder that is gone
+        print(f"ligature-lab: study: {why}; the same command continues it", file=sys.stderr)
+        return RUN_FAILED
     except KeyboardInterrupt:
         print("ligature-lab: study: interrupted; the same command continues it", file=sys.stderr)
         return INTERRUPTED

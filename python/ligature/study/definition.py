@@ -25,6 +25,8 @@ def _seeds(place: Place, value: Any) -> list[int]:
         first, dash, last = value.partition("-")
         if first.isdecimal() and (last.isdecimal() if dash else not last):
             value = range(int(first), int(last or first) + 1) or value
+            if isinstance(value, range) and value[-1] - value[0] >= MOST_RUNS:
+                raise place.refuse(f"{first}-{last}", f"at most {MOST_RUNS} seeds")
     seeds = list(value) if isinstance(value, (list, range)) else [value]
     if not seeds or len(set(map(repr, seeds))) < len(seeds):
         raise place.refuse(value, 'different whole numbers, such as [1, 2, 3] or "1-20"')
@@ -53,8 +55,8 @@ class Study:
         points = Number(1, MOST_RUNS, whole=True).check(top.of("latin").of("points"), latin.get("points", 1))
         drawn = Number(0, 2**32 - 1, whole=True).check(top.of("latin").of("seed"), latin.get("seed", 1))
         self.design: Design = Design(self.axes, self.seeds, int(points), int(drawn))
-        if len(self.design) > MOST_RUNS:
-            raise top.of("parameters").refuse(f"{len(self.design)} runs", f"at most {MOST_RUNS}")
+        if self.design.size > MOST_RUNS:
+            raise top.of("parameters").refuse(f"{self.design.size} runs", f"at most {MOST_RUNS}")
         self._read_task(top.of("task"), content.get("task"))
         self.measures: list[str] = self._measures(top.of("measures"), content.get("measures"))
         self.plots: list[dict[str, Any]] = pictures.read(top.of("plot"), content.get("plot", []), self._columns())

@@ -91,9 +91,10 @@ class Design:
         self._latin = [each for each in axes if each.latin]
         self._drawn = latin_points(self._latin, points, latin_seed) if self._latin else [()]
         self._sizes = [*(len(each.values) for each in self._grid), len(self._drawn), len(seeds)]
+        self.size: int = math.prod(self._sizes)  # may be too large for len()
 
     def __len__(self) -> int:
-        return math.prod(self._sizes)
+        return self.size
 
     def __getitem__(self, run: int) -> tuple[dict[str, Any], int]:
         """Parameters and seed of a run; the seed changes fastest."""

@@ -153,4 +153,8 @@ def rows(out: Path) -> pa.Table:
     parts = sorted((pathlib.Path(path_of(out)) / "rows").glob("part-*.parquet"))
     if not parts:
         raise Refusal(f"{out}: found no rows, allowed the folder of a study")
-    return pa.concat_tables([pq.read_table(part) for part in parts], promote_options="permissive").sort_by("run")
+    tables = [pq.read_table(part) for part in parts]
+    try:
+        return pa.concat_tables(tables, promote_options="permissive").sort_by("run")
+    except (pa.ArrowTypeError, pa.ArrowInvalid):  # a column that is a number in one part and a text in another
+        return table_of([row for each in tables for row in each.to_pylist()]).sort_by("run")

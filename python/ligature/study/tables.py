@@ -14,16 +14,22 @@ from ligature.study import statistics
 Rows = list[dict[str, Any]]
 
 
+def _cell(row: dict[str, Any], name: str) -> Any:
+    if name not in row:
+        raise Refusal(f"plot: column '{name}': found none of this name, allowed one of {', '.join(sorted(row))}")
+    return row[name]
+
+
 def groups(found: Rows, keys: list[str]) -> Iterator[tuple[tuple[Any, ...], Rows]]:
     """Rows with equal values of the keys, in the order of these values."""
     together: dict[tuple[Any, ...], Rows] = {}
     for row in found:
-        together.setdefault(tuple(row[key] for key in keys), []).append(row)
+        together.setdefault(tuple(_cell(row, key) for key in keys), []).append(row)
     yield from sorted(together.items(), key=lambda item: [(isinstance(value, str), value) for value in item[0]])
 
 
 def _value(row: dict[str, Any], name: str) -> Any:
-    value = row.get(name)
+    value = _cell(row, name)
     if not isinstance(value, (bool, int, float)):
         raise Refusal(f"plot: column '{name}' of run {row['run']}: found {value!r}, allowed a number or a truth value")
     return value
@@ -53,7 +59,7 @@ def thresholds_of(found: Rows, plot: dict[str, Any]) -> Rows:
     lines = []
     for group, members in groups(found, keys):
         done = [row for row in members if row["status"] == "done"]
-        at = statistics.threshold([row[plot["over"]] for row in done], [_value(row, plot["measure"]) for row in done])
+        at = statistics.threshold([_value(row, plot["over"]) for row in done], [_value(row, plot["measure"]) for row in done])
         lines.append(dict(zip(keys, group)) | {"runs": len(done), "failed": len(members) - len(done), **at._asdict()})
     return lines
 
