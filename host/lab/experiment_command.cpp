@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <memory>
 
+#include "host/console/stop_signal.hpp"
 #include "host/lab/experiments/experiment.hpp"
+#include "host/lab/option_checks.hpp"
 #include "host/lab/outcome.hpp"
 #include "host/lab/run_files.hpp"
 #include "host/lab/scenes_folder.hpp"
+#include "host/lab/validate/proceed.hpp"
 
 namespace ligature::lab {
 namespace {
@@ -32,7 +35,8 @@ with the number that decides it. A picture needs the Python that scripts/setup i
   haptics     which walls the loop renders, energy at the ports, force fidelity, velocity noise; firmware code in the loop
   all         one after another
 
-Exit: 0 all claims hold; 2 usage or scenes refused; 3 a claim fails.
+Exit: 0 all claims hold; 2 usage or scenes refused; 3 a claim fails; 130 interrupted: only what was finished before is
+written.
 
 Example
   ligature-lab experiment knotting --out out/knotting)";
@@ -46,15 +50,29 @@ struct Arguments {
 int execute(const Arguments& a, const std::vector<Entry>& entries) {
   const Bench bench{find_scenes(a.scenes), a.out};
   make_folder(bench.out);
+  validate::stop_asked = console::stop_requested;
   int worst = kDone;
-  for (const auto& entry : entries) worst = std::max(worst, entry.run(bench));
+  for (const auto& entry : entries) {
+    try {
+      worst = std::max(worst, entry.run(bench));
+      validate::heed_stop();  // a signal may have ended the drawing of a picture alone
+    } catch (const validate::Interrupted&) {
+      throw Refusal(std::string(entry.name) + ": interrupted; " + a.out + " has what was finished before",
+                    kInterrupted);
+    }
+  }
   return worst;
 }
 
 void add_folders(CLI::App& app, Arguments& a, const std::string& out) {
   a.out = out;
-  app.add_option("--out", a.out, "Folder for tables and pictures")->type_name("DIR")->capture_default_str();
-  app.add_option("--scenes", a.scenes, "Folder of scenes [./scenes, else the installed one]")->type_name("DIR");
+  app.add_option("--out", a.out, "Folder for tables and pictures")
+      ->type_name("DIR")
+      ->check(not_empty)
+      ->capture_default_str();
+  app.add_option("--scenes", a.scenes, "Folder of scenes [./scenes, else the installed one]")
+      ->type_name("DIR")
+      ->check(not_empty);
 }
 
 void add_alone(CLI::App& app, int& exit_code, Entry entry, const char* about, const std::string& more) {
@@ -64,7 +82,7 @@ void add_alone(CLI::App& app, int& exit_code, Entry entry, const char* about, co
   command->footer(
       more +
       "\nDIR holds the tables (CSV, also printed), their pictures (PNG) and the verdict: a PASS or FAIL line a "
-      "claim.\n\nExit: 0 all claims hold; 2 usage or scenes refused; 3 a claim fails.\n\nExample\n  "
+      "claim.\n\nExit: 0 all claims hold; 2 usage or scenes refused; 3 a claim fails; 130 interrupted.\n\nExample\n  "
       "ligature-lab " +
       entry.name + " --out out/" + entry.name);
   command->callback([a, entry, &exit_code] { exit_code = execute(*a, {entry}); });

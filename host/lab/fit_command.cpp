@@ -6,9 +6,11 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "host/lab/fit/fit.hpp"
+#include "host/lab/option_checks.hpp"
 #include "host/lab/outcome.hpp"
 #include "host/lab/report.hpp"
 #include "host/lab/run_files.hpp"
@@ -27,7 +29,8 @@ in which the amplitude of its tip falls from `start_m` to `end_m`. Two different
 from the drag of the air. The table printed has each value with half its 95 % interval, and how far the rows lie from the
 law. docs/materials.md has the recipe, step by step.
 
-Exit: 0 done; 2 a file or an option refused; 3 no material explains the measurements.
+Exit: 0 done; 2 a file or an option refused; 3 no material explains the measurements, or a value was left out because no
+scene takes it or the measurements hardly tell it.
 
 Examples
   ligature-lab fit weigh.csv load.csv
@@ -42,7 +45,7 @@ std::string toml_of(const fit::Fitted& fitted) {
     for (std::size_t k = 0; k < fit::kParameters; ++k) {
       const auto& found = fitted.found[k];
       if (!found || fit::kTold[k].table != table) continue;
-      lines += std::string(fit::kTold[k].name) + " = " + digits(found->value, 5) + "   # +- " +
+      lines += std::string(fit::kTold[k].name) + " = " + digits(found->value, fit::kDigits) + "   # +- " +
                digits(found->half_95, 2) + "\n";
     }
     if (lines.empty()) continue;
@@ -55,7 +58,7 @@ void print(const fit::Fitted& fitted) {
   Table found({"parameter", "value", "+- (95 %)", "unit"});
   for (std::size_t k = 0; k < fit::kParameters; ++k) {
     if (const auto& e = fitted.found[k]) {
-      found.row({std::string(fit::kTold[k].name), digits(e->value, 5), digits(e->half_95, 2),
+      found.row({std::string(fit::kTold[k].name), digits(e->value, fit::kDigits), digits(e->half_95, 2),
                  std::string(*fit::kTold[k].unit ? fit::kTold[k].unit : "-")});
     }
   }
@@ -74,19 +77,36 @@ void print(const fit::Fitted& fitted) {
   }
 }
 
+/// Checks the names before anything is read. @return the file to write; empty: none. @throws Refusal
+std::filesystem::path checked_names(const std::vector<std::string>& files, const std::string& out) {
+  namespace fs = std::filesystem;
+  std::error_code none;
+  const fs::path target = out.empty() ? fs::path() : checked_file("--out", out);
+  for (std::size_t k = 0; k < files.size(); ++k) {
+    if (!out.empty() && fs::equivalent(files[k], target, none))
+      throw Refusal("--out " + out + ": is one of the measurements, allowed another name");
+    for (std::size_t i = 0; i < k; ++i) {
+      if (fs::equivalent(files[i], files[k], none)) throw Refusal(files[k] + ": is named twice, allowed once");
+    }
+  }
+  return target;
+}
+
 int execute(const std::vector<std::string>& files, const std::string& out) {
+  const auto target = checked_names(files, out);
   std::vector<fit::Measurement> all;
   all.reserve(files.size());
   for (const auto& file : files) all.push_back(fit::read_measurement(file));
   fit::check_enough(all);
-  if (!out.empty() && !std::filesystem::is_directory(std::filesystem::absolute(out).parent_path()))
-    throw Refusal("--out: found " + out + ", allowed a file in a folder that exists");
-  const auto fitted = fit::fit(all);
+  auto fitted = fit::fit(all);
+  const auto left_out = fit::leave_out_impossible(fitted);
   print(fitted);
-  if (out.empty()) return kDone;
-  write_text(out, toml_of(fitted));
-  std::printf("file %s\n", out.c_str());
-  return kDone;
+  if (const std::string text = toml_of(fitted); !out.empty() && !text.empty()) {
+    write_text(target, text);
+    std::printf("file %s\n", out.c_str());
+  }
+  for (const auto& line : left_out) std::fprintf(stderr, "ligature-lab: fit: left out %s\n", line.c_str());
+  return left_out.empty() ? kDone : kRunFailed;
 }
 
 }  // namespace
@@ -96,7 +116,7 @@ void add_fit_command(CLI::App& app, int& exit_code) {
   auto files = std::make_shared<std::vector<std::string>>();
   auto out = std::make_shared<std::string>();
   command->add_option("files", *files, "Measurements (CSV)")->required()->type_name("FILE.csv");
-  command->add_option("--out", *out, "TOML file for the keys of a scene")->type_name("FILE");
+  command->add_option("--out", *out, "TOML file for the keys of a scene")->type_name("FILE")->check(not_empty);
   std::string footer = kFooter;
   for (const auto& law : fit::laws()) {
     std::string name = law.name;

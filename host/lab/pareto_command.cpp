@@ -10,12 +10,14 @@
 
 #include "host/console/progress.hpp"
 #include "host/console/stop_signal.hpp"
+#include "host/lab/option_checks.hpp"
 #include "host/lab/outcome.hpp"
 #include "host/lab/pareto/instructions.hpp"
 #include "host/lab/pareto/trials.hpp"
 #include "host/lab/published/front.hpp"
 #include "host/lab/report.hpp"
 #include "host/lab/run_files.hpp"
+#include "host/lab/validate/proceed.hpp"
 #include "protocol/scene/scene_file.hpp"
 
 namespace ligature::lab {
@@ -159,7 +161,7 @@ int run_one(const Arguments& a) {
   return kDone;
 }
 
-/// @return a point for each setting that was measured before the command was asked to stop
+/// @return a point for each setting that was measured whole before the command was asked to stop
 std::vector<Point> measure(const std::vector<Setting>& settings) {
   std::vector<Point> points;
   std::map<scene::Model, Traces> finest_of;
@@ -167,11 +169,14 @@ std::vector<Point> measure(const std::vector<Setting>& settings) {
   for (std::size_t k = 0; k < settings.size(); ++k) {
     const auto& s = settings[k];
     progress.show(static_cast<double>(k) / static_cast<double>(settings.size()), s.text());
-    if (console::stop_requested()) break;
-    if (!finest_of.contains(s.model)) finest_of[s.model] = run_trials(finest(s.model));
-    const auto traces = run_trials(s);
-    Point p{s, spread_of(traces.us), errors_of(s, traces, finest_of[s.model]), traces.penetration, traces.knot, {}};
-    points.push_back(std::move(p));
+    try {
+      if (!finest_of.contains(s.model)) finest_of[s.model] = run_trials(finest(s.model));
+      const auto traces = run_trials(s);
+      Point p{s, spread_of(traces.us), errors_of(s, traces, finest_of[s.model]), traces.penetration, traces.knot, {}};
+      points.push_back(std::move(p));
+    } catch (const validate::Interrupted&) {
+      break;
+    }
   }
   return points;
 }
@@ -192,6 +197,7 @@ void count(std::vector<Point>& points) {
 }
 
 int execute(const Arguments& a) {
+  validate::stop_asked = console::stop_requested;
   if (!a.one.empty()) return run_one(a);
   auto settings = all_settings(a.quick);
   if (!a.model.empty()) {
@@ -217,7 +223,7 @@ int execute(const Arguments& a) {
     published::write_overall(tables.emplace_back(out / "pareto-published.csv"), overall);
   }
   draw("pareto.py", tables, out / "pareto.png");
-  if (points.size() < settings.size()) {
+  if (console::stop_requested()) {
     std::fprintf(stderr, "pareto: interrupted after %zu of %zu settings\n", points.size(), settings.size());
     return kInterrupted;
   }
@@ -229,18 +235,27 @@ int execute(const Arguments& a) {
 void add_pareto_command(CLI::App& app, int& exit_code) {
   auto a = std::make_shared<Arguments>();
   auto* command = app.add_subcommand("pareto", "What accuracy costs: every model, N, substeps, contact passes");
-  command->add_option("--out", a->out, "Folder for pareto.csv and pareto.png")->type_name("DIR")->capture_default_str();
+  command->add_option("--out", a->out, "Folder for pareto.csv and pareto.png")
+      ->type_name("DIR")
+      ->check(not_empty)
+      ->capture_default_str();
   command->add_flag("--quick", a->quick, "About a sixth of the settings");
-  command->add_option("--model", a->model, "This model alone: paper-1 .. paper-5 or rod [all]")->type_name("MODEL");
+  command->add_option("--model", a->model, "This model alone: paper-1 .. paper-5 or rod [all]")
+      ->type_name("MODEL")
+      ->check(not_empty);
   command
       ->add_option("--published", a->published,
                    "Folder of a run of `ligature-lab published`: its front over all cases, too; repeatable")
       ->type_name("DIR")
       ->expected(1)
+      ->check(not_empty)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command->add_option("--one", a->one, "One setting's knot alone, MODEL/NODES/SUBSTEPS/PASSES or rod/NODES/PRESET")
-      ->type_name("SETTING");
-  command->add_option("--ticks", a->ticks, "With --one: so many ticks [the whole pull and hold]")->type_name("N");
+      ->type_name("SETTING")
+      ->check(not_empty);
+  command->add_option("--ticks", a->ticks, "With --one: so many ticks [the whole pull and hold]")
+      ->type_name("N")
+      ->check(within(1, 1e6));
   command->footer(kFooter);
   command->callback([a, &exit_code] { exit_code = execute(*a); });
 }

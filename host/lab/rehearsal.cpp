@@ -4,6 +4,7 @@
 
 #include "host/lab/cpu_time.hpp"
 #include "host/lab/script_tools.hpp"
+#include "host/lab/validate/proceed.hpp"
 
 namespace ligature::lab {
 
@@ -30,6 +31,7 @@ std::array<physics::ToolInput, 2> Rehearsal::tools_at(double t_s) {
 }
 
 bool Rehearsal::tick() {
+  validate::heed_stop();
   const double t_s = static_cast<double>(ticks_ + 1) * tick_s_;
   const auto tools = tools_at(t_s);
   const double from_us = thread_cpu_us();

@@ -28,7 +28,7 @@ class Rehearsal {
   [[nodiscard]] const std::optional<sim::KnotTier>& tier() const noexcept { return tier_; }
 
   /// Runs one tick with both hands at the script's positions for the end of the tick. False when the state is not
-  /// finite.
+  /// finite. @throws validate::Interrupted where validate::stop_asked is set, which `run` does not do.
   bool tick();
 
   /// Runs until time t (nearest tick); false when the run diverged before.

@@ -49,7 +49,7 @@ RunSummary run(Rehearsal& r, const RunOptions& options) {
   s.nodes = scene.suture.nodes;
   s.min_gap_m = scene.suture.length_m;
   make_folder(options.folder);
-  remove_old_outputs(options.folder);
+  check_outputs(options.folder, {"summary.json", "trace.csv", "shape.csv"});
   TraceFile trace(options.folder);
   ShapeFile shape(options.folder);
   console::Progress progress("run");
@@ -85,9 +85,12 @@ RunSummary run(Rehearsal& r, const RunOptions& options) {
   for (const double us : step_us) spent_s += 1e-6 * us;
   s.realtime_factor = spent_s > 0.0 ? s.duration_s / spent_s : 0.0;
   s.step_us = spread_of(std::move(step_us));
+  // None of the three replaces the one of an earlier run before all of them are whole: the disk may fill up.
+  trace.finish();
+  shape.finish();
+  write_text(options.folder / "summary.json", to_json(s));
   trace.close();
   shape.close();
-  write_text(options.folder / "summary.json", to_json(s));
   return s;
 }
 

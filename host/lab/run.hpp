@@ -38,7 +38,8 @@ struct RunSummary {
 };
 
 /// Runs to the end, to a stop signal, or to the first non-finite tick (which is not written), and writes trace.csv,
-/// shape.csv and summary.json.  @throws Refusal when a file cannot be written.
+/// shape.csv and summary.json. Those of an earlier run are replaced when the new ones are whole.  @throws Refusal when
+/// a file cannot be written.
 RunSummary run(Rehearsal& rehearsal, const RunOptions& options);
 
 /// Text of summary.json.

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "host/lab/option_checks.hpp"
 #include "host/lab/outcome.hpp"
 #include "host/lab/report.hpp"
 #include "host/lab/run.hpp"
@@ -28,7 +29,7 @@ struct Arguments {
 
 constexpr const char* kFooter = R"(
 The scene's thread is stepped tick by tick, as fast as the machine can, by the physics that the real-time firmware runs.
-DIR then holds
+DIR then holds these files; those of an earlier run stay until the new ones are whole:
   trace.csv     one row a tick: forces on the hands (world newtons, before hands.force_scale and the 3.3 N limit),
                 energies, largest stretch, smallest gap between strands (the thread's length when none is near),
                 contacts, and what the tick cost this thread in CPU time
@@ -98,15 +99,21 @@ void add_run_command(CLI::App& app, int& exit_code) {
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  run->add_option("--grippers", a->grippers, "Operator's script: CSV time,hand,x,y,z,grip")->type_name("FILE");
+  run->add_option("--grippers", a->grippers, "Operator's script: CSV time,hand,x,y,z,grip")
+      ->type_name("FILE")
+      ->check(not_empty);
   run->add_option("--tie", a->tie,
                   "Instead of a script: an operator that looks at the thread ties " + sim::knot_names())
       ->type_name("KNOT")
+      ->check(not_empty)
       ->excludes("--grippers");
   run->add_option("--seed", a->seed, "Which operator: pace, start, dwell, tremor")->capture_default_str();
   run->add_option("--duration", a->duration_s, "Simulated seconds [script's end + 9; 60 with --tie; else 10]")
       ->type_name("S");
-  run->add_option("--out", a->out, "Folder for the three files")->type_name("DIR")->capture_default_str();
+  run->add_option("--out", a->out, "Folder for the three files")
+      ->type_name("DIR")
+      ->check(not_empty)
+      ->capture_default_str();
   run->add_option("--shape-every", a->shape_every_s, "Seconds between shapes in shape.csv")
       ->type_name("S")
       ->capture_default_str();

@@ -1,5 +1,7 @@
 #include "host/lab/run_files.hpp"
 
+#include <unistd.h>
+
 #include <cerrno>
 #include <charconv>
 #include <cmath>
@@ -23,7 +25,7 @@ CsvFile::CsvFile(const std::filesystem::path& path, const char* header)
 }
 
 CsvFile::~CsvFile() {
-  if (!file_) return;
+  if (part_.empty()) return;  // it has its name
   file_.reset();
   std::remove(part_.c_str());
 }
@@ -40,17 +42,22 @@ void CsvFile::row(std::span<const double> cells) {
   if (std::fwrite(line_.data(), 1, line_.size(), file_.get()) != line_.size()) fail();
 }
 
-void CsvFile::close() {
+void CsvFile::finish() {
   if (std::fflush(file_.get()) != 0) fail();
   file_.reset();
+}
+
+void CsvFile::close() {
+  if (file_) finish();
   if (std::rename(part_.c_str(), path_.c_str()) != 0) fail();
+  part_.clear();
 }
 
 void CsvFile::fail() {
   const std::string why = std::strerror(errno);
   file_.reset();
   std::remove(part_.c_str());
-  throw Refusal(path_ + ": cannot be written: " + why + "; nothing was left under that name", kRunFailed);
+  throw Refusal(path_ + ": cannot be written: " + why + "; nothing was written under that name", kRunFailed);
 }
 
 TraceFile::TraceFile(const std::filesystem::path& folder)
@@ -85,16 +92,42 @@ void make_folder(const std::filesystem::path& folder) {
   }
 }
 
-void remove_old_outputs(const std::filesystem::path& folder, std::initializer_list<const char*> names) {
+void check_outputs(const std::filesystem::path& folder, std::initializer_list<const char*> names) {
   for (const char* name : names) {
+    std::error_code none;
     const auto path = folder / name;
-    std::error_code error;
-    const auto found = std::filesystem::symlink_status(path, error);
-    if (!std::filesystem::exists(found)) continue;
-    if (!std::filesystem::is_regular_file(found) && !std::filesystem::is_symlink(found))
+    const auto found = std::filesystem::symlink_status(path, none);
+    if (!std::filesystem::exists(found) || std::filesystem::is_regular_file(found)) continue;
+    if (!std::filesystem::is_symlink(found))
       throw Refusal(path.string() + ": is no file, allowed a regular file or a new name");
-    std::filesystem::remove(path, error);
-    if (error) throw Refusal(path.string() + ": cannot be replaced: " + error.message());
+  }
+}
+
+std::filesystem::path checked_file(const std::string& option, const std::filesystem::path& given) {
+  namespace fs = std::filesystem;
+  const auto refuse = [&](const std::string& found) {
+    throw Refusal(option + " " + given.string() + ": found " + found +
+                  ", allowed a new or a regular file in a folder that exists");
+  };
+  std::error_code none;
+  const auto found = fs::status(given, none);
+  if (fs::is_directory(found)) refuse("a folder");
+  if (fs::exists(found) && !fs::is_regular_file(found)) refuse("a device, pipe or socket");
+  const bool is_link = fs::is_symlink(fs::symlink_status(given, none));
+  if (is_link && !fs::exists(found)) refuse("a link to nothing");
+  const fs::path file = is_link ? fs::canonical(given, none) : fs::absolute(given, none);
+  const fs::path folder = file.parent_path();
+  if (!fs::is_directory(folder, none)) refuse("no folder " + folder.string());
+  if (access(folder.c_str(), W_OK) != 0) refuse("a folder that cannot be written");
+  return is_link ? file : given;
+}
+
+void remove_old_outputs(const std::filesystem::path& folder, std::initializer_list<const char*> names) {
+  check_outputs(folder, names);
+  for (const char* name : names) {
+    std::error_code error;
+    std::filesystem::remove(folder / name, error);
+    if (error) throw Refusal((folder / name).string() + ": cannot be replaced: " + error.message());
   }
 }
 

@@ -27,7 +27,8 @@ struct TraceRow {
 };
 
 /// A CSV file that gets its name only when it is complete: written as NAME.part, renamed by close(), removed otherwise.
-/// @throws Refusal when it cannot be created, and with exit code 3 when the disk is full.
+/// Until then an older file of that name stays. @throws Refusal when it cannot be created, and with exit code 3 when
+/// the disk is full.
 class CsvFile {
  public:
   CsvFile(const std::filesystem::path& path, const char* header);
@@ -36,6 +37,8 @@ class CsvFile {
   CsvFile& operator=(const CsvFile&) = delete;
   /// Writes one row; each number in its shortest exact form.
   void row(std::span<const double> cells);
+  /// Writes everything to NAME.part, for files that are to get their names together; then close() only renames.
+  void finish();
   void close();
 
  private:
@@ -50,6 +53,7 @@ class TraceFile {
  public:
   explicit TraceFile(const std::filesystem::path& folder);
   void add(const TraceRow& row);
+  void finish() { file_.finish(); }
   void close() { file_.close(); }
 
  private:
@@ -60,6 +64,7 @@ class ShapeFile {
  public:
   explicit ShapeFile(const std::filesystem::path& folder);
   void add(double t_s, std::span<const physics::Vec3> nodes_W);
+  void finish() { file_.finish(); }
   void close() { file_.close(); }
 
  private:
@@ -69,9 +74,17 @@ class ShapeFile {
 /// Creates the folder of a run. @throws Refusal.
 void make_folder(const std::filesystem::path& folder);
 
-/// Removes the files of an earlier run, so that they cannot be taken for results of a run that failed. @throws Refusal.
-void remove_old_outputs(const std::filesystem::path& folder,
-                        std::initializer_list<const char*> names = {"summary.json", "trace.csv", "shape.csv"});
+/// Checks, before anything is run, that nothing but a file has the name of a file that will be written. @throws
+/// Refusal.
+void check_outputs(const std::filesystem::path& folder, std::initializer_list<const char*> names);
+
+/// Checks, before anything is run, the file that an option names: a new or a regular file, in a folder that exists.
+/// @return the file to write; a symbolic link is followed, so that it is kept. @throws Refusal.
+[[nodiscard]] std::filesystem::path checked_file(const std::string& option, const std::filesystem::path& given);
+
+/// Removes the files of an earlier run, so that they cannot be taken for results of a run that failed. Removes none
+/// when one of them is no file. @throws Refusal.
+void remove_old_outputs(const std::filesystem::path& folder, std::initializer_list<const char*> names);
 
 /// Writes a text file atomically (temporary file, then rename). @throws Refusal.
 void write_text(const std::filesystem::path& path, const std::string& text);

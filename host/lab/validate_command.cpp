@@ -9,6 +9,7 @@
 
 #include "host/console/progress.hpp"
 #include "host/console/stop_signal.hpp"
+#include "host/lab/option_checks.hpp"
 #include "host/lab/outcome.hpp"
 #include "host/lab/report.hpp"
 #include "host/lab/run_files.hpp"
@@ -255,14 +256,16 @@ void add_validate_command(CLI::App& app, int& exit_code) {
   auto a = std::make_shared<Arguments>();
   auto* command = app.add_subcommand("validate", "A model against experiments with a known answer");
   command->add_option("--model", a->model, "paper-1 .. paper-5 or rod")->capture_default_str();
-  command->add_option("--accuracy", a->accuracy,
-                      "The rod's: fast, balanced or fine [balanced; fine for 200 nodes on a desk]");
+  command
+      ->add_option("--accuracy", a->accuracy,
+                   "The rod's: fast, balanced or fine [balanced; fine for 200 nodes on a desk]")
+      ->check(not_empty);
   command->add_option("--nodes", a->nodes, "50 or 200 [both]")->type_name("N");
-  command->add_option("--only", a->only, "One case, by name")->type_name("CASE");
+  command->add_option("--only", a->only, "One case, by name")->type_name("CASE")->check(not_empty);
   command
       ->add_option("--share", a->share, "Share of each tolerance that a case may use: what passes at 0.5 has a margin")
       ->capture_default_str();
-  command->add_option("--out", a->out, "Folder for validate.csv and validate.json")->type_name("DIR");
+  command->add_option("--out", a->out, "Folder for validate.csv and validate.json")->type_name("DIR")->check(not_empty);
   command->add_flag("--quick", a->quick, "Only the cases that take a moment");
   command->add_flag("--convergence", a->convergence, "Order in N and in substeps instead (rod)");
   std::string footer = kFooter;

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "host/console/progress.hpp"
-#include "host/console/stop_signal.hpp"
 #include "host/lab/experiments/experiment.hpp"
 #include "host/lab/outcome.hpp"
 #include "host/lab/rehearsal.hpp"
@@ -47,7 +46,7 @@ bool survives(scene::Scene scene, double dt_s) {
 double largest_step(const scene::Scene& scene, double low, double high) {
   if (survives(scene, high)) return high;
   if (!survives(scene, low)) return low;
-  while (high / low > 1.02 && !console::stop_requested()) {
+  while (high / low > 1.02) {
     const double middle = std::sqrt(low * high);
     (survives(scene, middle) ? low : high) = middle;
   }

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "host/console/progress.hpp"
-#include "host/console/stop_signal.hpp"
 #include "host/lab/experiments/experiment.hpp"
 #include "host/lab/outcome.hpp"
 #include "host/lab/report.hpp"
@@ -82,7 +81,7 @@ Pulls map_pulls(const LooseKnot& knot, int every_node, Table& map, console::Prog
   const int n = static_cast<int>(knot.thread.nodes_W().size());
   const std::vector<Vec3> shape(knot.thread.nodes_W().begin(), knot.thread.nodes_W().end());
   Pulls pulls;
-  for (int node = 1; node < n && !console::stop_requested(); node += every_node) {
+  for (int node = 1; node < n; node += every_node) {
     progress.show(double(node) / n, "map of " + knot.type + ", node " + std::to_string(node));
     for (std::size_t d = 0; d < six_directions().size(); ++d) {
       const auto result = try_pull(shape, knot.scene, {node, six_directions()[d]});
@@ -99,7 +98,7 @@ Pulls map_pulls(const LooseKnot& knot, int every_node, Table& map, console::Prog
 int undo(int knots, const std::string& scene, const scene::GripperScript& script, const std::string& type, Table& plans,
          console::Progress& progress) {
   int undone = 0, drawn = 0;
-  for (int k = 0; k < knots && !console::stop_requested(); ++k) {
+  for (int k = 0; k < knots; ++k) {
     progress.show(double(k) / knots, "planner, " + type + " number " + std::to_string(k + 1));
     auto knot = tie_loosely(scene, script, type, static_cast<std::uint32_t>(k), drawn);
     const auto nodes = knot.thread.nodes_W();

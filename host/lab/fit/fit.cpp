@@ -7,6 +7,8 @@
 #include <unsupported/Eigen/NumericalDiff>
 
 #include "host/lab/outcome.hpp"
+#include "host/lab/report.hpp"
+#include "protocol/scene/scene_file.hpp"
 
 namespace ligature::fit {
 namespace {
@@ -135,6 +137,23 @@ double student_95(double freedom) {
   return z + (z3 + z) / (4.0 * freedom) + (5.0 * z3 * z * z + 16.0 * z3 + 3.0 * z) / (96.0 * freedom * freedom);
 }
 
+/// Why a value cannot stand in a scene, as the reader of scenes says it; empty: it can.
+std::string objection_to(const Told& told, const Estimate& e) {
+  constexpr double kVague = 10.0;
+  const std::string value = lab::digits(e.value, kDigits);
+  // The interval is also zero where the laws do not depend on the value any more.
+  if (!(e.half_95 > 0.0 && e.half_95 <= kVague * e.value)) {
+    return std::string(told.name) + ": found " + value + " +- " + lab::digits(e.half_95, 2) +
+           ", allowed a value that the rows tell better than by a factor of ten";
+  }
+  if (*told.table == '\0') return {};
+  std::string text = "[suture]\nmodel = \"rod\"\n";
+  if (told.table != std::string("suture")) text += "[" + std::string(told.table) + "]\n";
+  const auto read = scene::parse_scene(text + told.name + " = " + value + "\n", "");
+  const auto* error = std::get_if<scene::Error>(&read);
+  return error == nullptr ? std::string() : error->text.substr(error->text.find("key "));
+}
+
 }  // namespace
 
 Fitted fit(const std::vector<Measurement>& all) {
@@ -167,6 +186,18 @@ Fitted fit(const std::vector<Measurement>& all) {
   for (const auto& kind : problem.kinds)
     fitted.misfits.push_back({kind.law, kind.law->figures[kind.figure], rms(r, kind.at), kind.at.size()});
   return fitted;
+}
+
+std::vector<std::string> leave_out_impossible(Fitted& fitted) {
+  std::vector<std::string> lines;
+  for (std::size_t k = 0; k < kParameters; ++k) {
+    auto& found = fitted.found[k];
+    const std::string why = found ? objection_to(kTold[k], *found) : std::string();
+    if (why.empty()) continue;
+    lines.push_back(why);
+    found.reset();
+  }
+  return lines;
 }
 
 }  // namespace ligature::fit

@@ -2,6 +2,7 @@
 // Least squares: the material that explains a lab's measurements best.
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "host/lab/fit/measurement.hpp"
@@ -27,5 +28,13 @@ struct Fitted {
 /// Fits by Levenberg-Marquardt in the logarithms of the parameters. Each kind of figure is weighted by its own scatter.
 /// @pre check_enough(all)  @throws lab::Refusal (exit code 3) when the fit does not converge.
 [[nodiscard]] Fitted fit(const std::vector<Measurement>& all);
+
+/// Digits with which a value is printed and written.
+inline constexpr int kDigits = 5;
+
+/// Removes the values that no scene takes, and those of which the rows do not even tell the order of magnitude:
+/// readings that contradict a law let its parameters run away. @return one line for each, with what was found and what
+/// is allowed.
+[[nodiscard]] std::vector<std::string> leave_out_impossible(Fitted& fitted);
 
 }  // namespace ligature::fit

@@ -1,7 +1,10 @@
 #include "host/lab/pareto/setting.hpp"
 
 #include <algorithm>
+#include <charconv>
+#include <iterator>
 #include <sstream>
+#include <system_error>
 
 #include "host/lab/outcome.hpp"
 #include "host/lab/pareto/specimens.hpp"
@@ -14,6 +17,17 @@ using scene::Model;
 
 constexpr Model kPaper[] = {Model::kPaper1, Model::kPaper2, Model::kPaper3, Model::kPaper4, Model::kPaper5};
 constexpr const char* kPresets[] = {"fast", "balanced", "fine"};
+
+/// A number of --one, and what it may be: nodes and substeps as in a scene, where the rod needs 4 nodes.
+struct Number {
+  const char* name;
+  int least, most;
+  int Setting::*value;
+};
+constexpr Number kNumbers[] = {{"NODES", 4, 5000, &Setting::nodes},
+                               {"SUBSTEPS", 1, 10'000, &Setting::substeps},
+                               {"PASSES", 0, 1000, &Setting::passes}};
+constexpr int kMostWork = 2'000'000;  // nodes times substeps
 
 }  // namespace
 
@@ -32,29 +46,30 @@ Setting setting_of(const std::string& text) {
   std::istringstream in(text);
   std::vector<std::string> words;
   for (std::string word; std::getline(in, word, '/');) words.push_back(word);
-  const Refusal refused("--one: found " + text + ", allowed MODEL/NODES/SUBSTEPS/PASSES or rod/NODES/PRESET");
+  const auto refuse = [&text](const std::string& allowed) {
+    throw Refusal("--one: found " + text + ", allowed " + allowed);
+  };
+  constexpr const char* kForms = "MODEL/NODES/SUBSTEPS/PASSES or rod/NODES/PRESET";
   Setting s;
   bool known = false;
   for (const Model m : {kPaper[0], kPaper[1], kPaper[2], kPaper[3], kPaper[4], Model::kRod}) {
     if (!words.empty() && words[0] == scene::name(m)) s.model = m, known = true;
   }
-  try {
-    if (known && words.size() == 3 &&
-        std::find(std::begin(kPresets), std::end(kPresets), words[2]) != std::end(kPresets)) {
-      s.nodes = std::stoi(words[1]);
-      s.preset = words[2];
-      return s;
-    }
-    if (known && words.size() == 4) {
-      s.nodes = std::stoi(words[1]);
-      s.substeps = std::stoi(words[2]);
-      s.passes = std::stoi(words[3]);
-      return s;
-    }
-  } catch (const std::logic_error&) {  // no number where one should be
-    throw refused;
+  const bool has_preset = words.size() == 3 && s.model == Model::kRod &&
+                          std::find(std::begin(kPresets), std::end(kPresets), words[2]) != std::end(kPresets);
+  if (!known || (words.size() != 4 && !has_preset)) refuse(kForms);
+  if (has_preset) s.preset = words[2];
+  for (std::size_t k = 0; k < (has_preset ? 1U : std::size(kNumbers)); ++k) {
+    const auto& [name, least, most, value] = kNumbers[k];
+    const std::string& word = words[k + 1];
+    const auto [at, error] = std::from_chars(word.data(), word.data() + word.size(), s.*value);
+    if (error != std::errc{} || at != word.data() + word.size() || s.*value < least || s.*value > most)
+      refuse(std::string(name) + " " + std::to_string(least) + " .. " + std::to_string(most));
   }
-  throw refused;
+  if (!has_preset && s.substeps > kMostWork / s.nodes)
+    refuse("NODES times SUBSTEPS up to " + std::to_string(kMostWork));
+  if (s.text() != text) refuse(kForms);  // with a slash at its end, for example
+  return s;
 }
 
 Setting finest(Model model) {

@@ -22,7 +22,7 @@ struct Setting {
   [[nodiscard]] std::string text() const;
 };
 
-/// @throws Refusal when the text does not have the form of Setting::text().
+/// @throws Refusal when the text does not have the form of Setting::text(), or names what no thread can have.
 [[nodiscard]] Setting setting_of(const std::string& text);
 
 /// All settings of the diagram: every model, N = 20 .. 500, several substeps (for an explicit model the number that its

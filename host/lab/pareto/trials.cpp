@@ -7,6 +7,7 @@
 #include "host/knot/recognise.hpp"
 #include "host/lab/cpu_time.hpp"
 #include "host/lab/validate/overhand.hpp"
+#include "host/lab/validate/proceed.hpp"
 
 namespace ligature::lab {
 namespace {
@@ -28,7 +29,7 @@ std::vector<Vec3> swing_of(const Setting& setting) {
   const int every = setting.model == scene::Model::kRod ? 10 : 40;
   std::vector<Vec3> end;
   for (int k = 1; k <= 20 * every; ++k) {
-    thread.tick(validate::no_hands());
+    validate::proceed(thread, validate::no_hands());
     if (k % every == 0) end.push_back(thread.nodes_W().back());
   }
   return end;
@@ -62,6 +63,7 @@ void pull_knot(const Setting& setting, int cost_only, Traces& t) {
       tools[h].v_WT.x() = pulling ? sense * pull.speed_m_per_s : 0.0;
       if (pulling) tools[h].p_WT.x() += sense * step;
     }
+    validate::heed_stop();
     const double before = thread_cpu_us();
     measured_tick(thread, tools);
     t.us.push_back(thread_cpu_us() - before);

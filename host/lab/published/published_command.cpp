@@ -9,6 +9,7 @@
 #include "host/console/progress.hpp"
 #include "host/console/stop_signal.hpp"
 #include "host/lab/cpu_time.hpp"
+#include "host/lab/option_checks.hpp"
 #include "host/lab/outcome.hpp"
 #include "host/lab/published/front.hpp"
 #include "host/lab/report.hpp"
@@ -197,9 +198,9 @@ void add_published_command(CLI::App& app, int& exit_code) {
           "Also balanced with this budget for contact, instructions a tick: suture.work_instructions; repeatable")
       ->type_name("N")
       ->expected(1)
-      ->check(CLI::Range(1e5, 1e9))
+      ->check(within(1e5, 1e9))
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command->add_option("--out", a->out, "Folder for table, points and pictures")->type_name("DIR");
+  command->add_option("--out", a->out, "Folder for table, points and pictures")->type_name("DIR")->check(not_empty);
   command->add_flag("--quick", a->quick, "The short form of each case, which the tests run");
   std::string footer = kFooter;
   for (const auto& c : p::all_cases()) {

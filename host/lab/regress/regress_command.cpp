@@ -9,6 +9,7 @@
 
 #include "host/console/progress.hpp"
 #include "host/console/stop_signal.hpp"
+#include "host/lab/option_checks.hpp"
 #include "host/lab/outcome.hpp"
 #include "host/lab/regress/expected.hpp"
 #include "host/lab/report.hpp"
@@ -69,12 +70,13 @@ r::Expectations expected_of(const Arguments& a) {
   return r::read_expected(std::get<std::string>(read), a.expected);
 }
 
-/// Refuses before anything is run.
-void check_update(const Arguments& a) {
-  if (a.update.empty()) return;
+/// Refuses before anything is run. @return the file to write; empty: none.
+fs::path check_update(const Arguments& a) {
+  if (a.update.empty()) return {};
   if (a.cheap || !a.scenes.empty()) throw Refusal("--update: found a choice of scenes, allowed all scenes only");
   if (fs::exists(a.update) && !a.overwrite)
     throw Refusal("--update " + a.update + ": found a file of that name, allowed a new name, or --overwrite");
+  return checked_file("--update", a.update);
 }
 
 /// Measures the scenes. @return the scene that was interrupted, or an empty text. `all` has those before it.
@@ -113,7 +115,7 @@ int print(const std::vector<r::Line>& lines, bool moved_only) {
 }
 
 int execute(const Arguments& a) {
-  check_update(a);
+  const fs::path update = check_update(a);
   const auto scenes = chosen(a);
   const auto expected = expected_of(a);
   r::Measured measured;
@@ -126,7 +128,7 @@ int execute(const Arguments& a) {
     return kInterrupted;
   }
   if (!a.update.empty()) {
-    write_text(a.update, r::write_expected(measured, expected));
+    write_text(update, r::write_expected(measured, expected));
     std::printf("expected figures written to %s\n", a.update.c_str());
     return kDone;
   }
@@ -142,11 +144,16 @@ void add_regress_command(CLI::App& app, int& exit_code) {
   command->add_option("scene", a->scenes, "Names of scenes [all]")->type_name("SCENE");
   command->add_flag("--cheap", a->cheap, "Only the scenes that take less than about a second, which a test runs");
   command->add_flag("--moved", a->moved, "Print only the figures that are not the same");
-  command->add_option("--expected", a->expected, "Compare with this file [built in]")->type_name("FILE");
+  command->add_option("--expected", a->expected, "Compare with this file [built in]")
+      ->type_name("FILE")
+      ->check(not_empty);
   command->add_option("--update", a->update, "Write the measured figures to a file, with the tolerances as before")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->check(not_empty);
   command->add_flag("--overwrite", a->overwrite, "--update may replace an existing file");
-  command->add_option("--scenes", a->folder, "Folder of scenes [./scenes, else the installed one]")->type_name("DIR");
+  command->add_option("--scenes", a->folder, "Folder of scenes [./scenes, else the installed one]")
+      ->type_name("DIR")
+      ->check(not_empty);
   std::string footer = kFooter;
   for (const auto& s : r::all_scenes()) {
     std::string name = s.name;

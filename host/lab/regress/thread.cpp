@@ -107,7 +107,6 @@ Figures paper_overhand(const Bench& bench) {
   const auto& sim = tying.simulation();
   double most_N = 0.0;
   while (tying.time_s() < lab::default_duration_s(tying.script()) && tying.tick()) {
-    if (stop_asked()) throw Interrupted();
     for (const auto hand : {physics::Hand::kLeft, physics::Hand::kRight})
       most_N = std::max(most_N, sim.hand(hand).f_W.norm());
   }

@@ -6,6 +6,7 @@
 
 #include "host/console/stop_signal.hpp"
 #include "host/errors.hpp"
+#include "host/lab/option_checks.hpp"
 #include "host/lab/outcome.hpp"
 #include "host/lab/report.hpp"
 #include "host/lab/rerun/rerun.hpp"
@@ -135,7 +136,7 @@ void add_rerun_command(CLI::App& app, int& exit_code) {
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  rerun->add_option("--out", a->out, "Folder for the files [none are written]")->type_name("DIR");
+  rerun->add_option("--out", a->out, "Folder for the files [none are written]")->type_name("DIR")->check(not_empty);
   rerun->add_option("--cuts", a->cuts, "Ticks that the clock cut: as recorded, or none [recorded; with --set none]")
       ->check(CLI::IsMember({"recorded", "none"}));
   rerun->add_option("--session", a->options.session, "Which run of the firmware, from 1, where the log holds several")

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "firmware/platform/realtime.hpp"
+#include "host/lab/validate/proceed.hpp"
 #include "sim_device/script_hand.hpp"
 
 namespace ligature::lab {
@@ -93,6 +94,7 @@ std::optional<std::string> VirtualRig::run(std::int64_t ticks, bool end_when_don
   cycle.run();
   take_records();
   if (unwritten_) std::rethrow_exception(unwritten_);
+  if (interrupted_) throw validate::Interrupted();
   if (recording_) recording_->close();
   return std::nullopt;
 }
@@ -109,6 +111,7 @@ bool VirtualRig::Wait::wait(Nanoseconds deadline) noexcept {
 
 void VirtualRig::sleep_until(Nanoseconds at) noexcept {
   take_records();
+  if (validate::stop_asked()) interrupted_ = true, cycle.end_after(0);  // nothing may be thrown here: run() does
   if (cut_left_at >= 0 && cycle.periods() >= cut_left_at) left.cut = true;
   if (seeing_ != nullptr) look_and_act();
   time = std::max(time, at);

@@ -67,7 +67,7 @@ class VirtualRig {
   /// Start-up, at most `ticks` ticks, shut-down; closes the recording. With `end_when_done` the run ends when the
   /// operator is done.
   /// @return the reason when it did not start, else nothing. @throws host::RunFailed when the recording could not be
-  /// written.
+  /// written; validate::Interrupted, with the recording incomplete, when validate::stop_asked said so.
   std::optional<std::string> run(std::int64_t ticks, bool end_when_done = false);
 
   [[nodiscard]] bool is_done() const noexcept;  ///< whether both hands' motion is over and their dead-men released
@@ -131,7 +131,7 @@ class VirtualRig {
   SeeingOperator* seeing_ = nullptr;
   std::unique_ptr<RigLog> recording_;
   std::exception_ptr unwritten_;
-  bool end_when_done_ = false;
+  bool end_when_done_ = false, interrupted_ = false;
 };
 
 }  // namespace ligature::lab

@@ -1,11 +1,13 @@
 #include "host/lab/tie/play_once.hpp"
 
 #include <array>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "host/lab/rehearsal.hpp"
 #include "host/lab/rig/virtual_rig.hpp"
+#include "host/lab/tie/recordings.hpp"
 #include "sim_device/operator/knot_tier.hpp"
 #include "sim_device/unrest.hpp"
 
@@ -52,6 +54,7 @@ Played play_once(const scene::Scene& scene, const std::string& scene_file, const
   setup.frame_loss = trouble.frame_loss;
   setup.scene_file = scene_file;
   setup.scene_toml = scene_toml + "\n# seed " + std::to_string(seed);
+  std::optional<UnfinishedRecording> unfinished;
   VirtualRig rig(setup, troubled(scripted_hands(setup, script), trouble, dice, seed));
   if (rig.thread.work() > 0)
     rig.thread.set_work(static_cast<long>(trouble.work_share * static_cast<double>(rig.thread.work())));
@@ -61,12 +64,13 @@ Played play_once(const scene::Scene& scene, const std::string& scene_file, const
     rig.stall_for = rt::kPeriod * (1 + static_cast<int>(dice.between(0.0, kLongestStall_ticks)));
   };
   if (!recording.empty()) {
-    std::filesystem::remove(recording);
-    rig.record(recording.string());
+    unfinished.emplace(recording);
+    rig.record(unfinished->part());
   }
   const double end_s = scene::end_time_s(script) + kWatched_s;
   if (const auto why = rig.run(static_cast<std::int64_t>(1e3 * end_s)))
     throw std::runtime_error("the rig did not start: " + *why);
+  if (unfinished) unfinished->finish();
   Played played;
   played.seconds = 1e-3 * static_cast<double>(rig.records.size());
   for (const rt::TickRecord& r : rig.records) {

@@ -27,7 +27,7 @@ struct Played {
   int fault = 0;  ///< fault number of the last fault; 0: none
 };
 
-/// @param recording name of the log; empty: none.  @throws Refusal, std::runtime_error
+/// @param recording name of the log; empty: none.  @throws Refusal, std::runtime_error, validate::Interrupted
 [[nodiscard]] Played play_once(const scene::Scene& scene, const std::string& scene_file, const std::string& scene_toml,
                                const scene::GripperScript& script, const Trouble& trouble, std::uint32_t seed,
                                const std::filesystem::path& recording);

@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <cstdint>
+#include <limits>
 #include <string>
 
 #include "host/lab/outcome.hpp"
@@ -25,8 +26,10 @@ inline Seeds read_seeds(const std::string& text) {
         *at == '-' ? std::from_chars(at + 1, end, s.last) : std::from_chars_result{at, std::errc::invalid_argument};
     good = rest.ec == std::errc{} && rest.ptr == end;
   }
-  if (!good || s.last < s.first || s.last - s.first >= 10'000) {
-    throw Refusal("--seeds: found \"" + text + "\", allowed N or FIRST-LAST, rising, at most 10000 of them");
+  constexpr std::uint32_t kMost = std::numeric_limits<std::uint32_t>::max() - 1;  // loops count one further
+  if (!good || s.last < s.first || s.last > kMost || s.last - s.first >= 10'000) {
+    throw Refusal("--seeds: found \"" + text + "\", allowed N or FIRST-LAST, rising, up to " + std::to_string(kMost) +
+                  ", at most 10000 of them");
   }
   return s;
 }

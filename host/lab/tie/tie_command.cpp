@@ -3,17 +3,20 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <fstream>
 #include <memory>
 
 #include "host/console/progress.hpp"
 #include "host/console/stop_signal.hpp"
 #include "host/errors.hpp"
+#include "host/lab/option_checks.hpp"
 #include "host/lab/outcome.hpp"
 #include "host/lab/rehearsal.hpp"
 #include "host/lab/report.hpp"
 #include "host/lab/run_files.hpp"
 #include "host/lab/tie/recordings.hpp"
 #include "host/lab/tie/tie_once.hpp"
+#include "host/lab/validate/proceed.hpp"
 #include "protocol/scene/recorded_scene.hpp"
 #include "sim_device/operator/knot_tier.hpp"
 #include "sim_device/operator/knots.hpp"
@@ -46,8 +49,8 @@ Several knots or models end with a table.
 --script-out writes what the hands wanted, without their tremor and within the arm's reach, as a script for
 `ligature-device --operator`: it plays on a rig and does not look. `ligature-lab play` counts how often it ties.
 
-DIR/results.csv has one row for each run. Exit: 0 done; 2 knot, scene or seeds refused; 3 fewer than 95 % tied of any
-knot in any model; 130 interrupted, what was done is kept.
+DIR/results.csv has one row for each run that is finished, those of earlier calls included. Exit: 0 done; 2 knot, scene
+or seeds refused; 3 fewer than 95 % tied of any knot in any model; 130 interrupted, what was finished is kept.
 
 Examples:
   ligature-lab tie overhand figure-eight square granny surgeon --models paper-1,paper-4 --seeds 1-4
@@ -60,15 +63,14 @@ struct Count {
   [[nodiscard]] std::string text() const { return std::to_string(tied) + " of " + std::to_string(tried); }
 };
 
-/// Checks --script-out: a script can be written for one run only, into an existing folder. @throws Refusal
-void check_script_out(const Arguments& a, const Seeds& seeds) {
-  if (a.script_out.empty()) return;
+/// Checks --script-out: a script can be written for one run only. @return the file to write. @throws Refusal
+std::string checked_script_out(const Arguments& a, const Seeds& seeds) {
+  if (a.script_out.empty()) return {};
   const auto runs = a.knots.size() * std::max<std::size_t>(1, a.models.size()) * (seeds.last - seeds.first + 1);
   if (runs != 1) throw Refusal("--script-out: found " + std::to_string(runs) + " runs, allowed one knot with one seed");
-  const auto folder = std::filesystem::absolute(a.script_out).parent_path();
-  if (!std::filesystem::is_directory(folder)) throw Refusal("--script-out: found no folder " + folder.string());
   if (!(a.script_within > 0.0 && a.script_within <= 10.0))
     throw Refusal("--script-within: found " + digits(a.script_within) + ", allowed more than 0, at most 10");
+  return checked_file("--script-out", a.script_out).string();
 }
 
 /// One knot tied in one model.
@@ -88,6 +90,7 @@ Cell cell_of(const Arguments& a, const std::string& knot, const std::string& mod
   if (!model.empty()) overrides.push_back("suture.model=\"" + model + "\"");
   const auto text = read_scene_text_or_refuse(c.file);
   c.scene = parse_scene_or_refuse(text, c.file, overrides);
+  check_tick(c.scene, c.file);
   const auto thread = make_or_refuse(c.scene, c.file);
   c.toml = scene::recorded_text(text, overrides, c.scene);
   if (thread.work() > 0)
@@ -114,6 +117,23 @@ std::string missed_in_one_cell(const Tied& t) {
   return cell;
 }
 
+constexpr const char* kHeader = "model,knot,seed,found,seconds,tied,moves given up\n";
+
+/// What results.csv of an earlier call says, without the rows that this call makes anew; else the header alone.
+std::string rows_to_keep(const std::string& file, const std::vector<Cell>& cells, const Seeds& seeds) {
+  std::ifstream earlier(file);
+  std::string line, kept = kHeader;
+  if (!std::getline(earlier, line) || line + "\n" != kHeader) return kept;
+  const auto is_made_anew = [&](const Cell& c) {
+    for (std::uint32_t seed = seeds.first; seed <= seeds.last; ++seed)
+      if (line.starts_with(c.model + "," + c.knot + "," + std::to_string(seed) + ",")) return true;
+    return false;
+  };
+  while (std::getline(earlier, line))
+    if (std::ranges::none_of(cells, is_made_anew)) kept += line + "\n";
+  return kept;
+}
+
 /// Ties the knot once per seed; prints a line and adds a row to results.csv for each.
 Count tie_all(const Arguments& a, const Cell& c, const Seeds& seeds, std::string& results) {
   Count count;
@@ -128,9 +148,11 @@ Count tie_all(const Arguments& a, const Cell& c, const Seeds& seeds, std::string
                     c.knot + ", seed " + std::to_string(seed) + ", tied " + count.text());
       t = tie_once(c.scene, c.file, c.toml, c.knot, seed, recording_of(c.folder, c.knot, seed),
                    a.script_out.empty() ? nullptr : &hands);
+    } catch (const validate::Interrupted&) {
+      break;
     } catch (const host::RunFailed&) {
       if (!console::stop_requested()) throw;
-      break;  // a signal ends the reading of the recording
+      break;  // a signal also ends the reading of the recording
     }
     ++count.tried;
     count.tied += t.good();
@@ -162,14 +184,16 @@ void print_table(const Arguments& a, const std::vector<Count>& counts) {
 
 int execute(Arguments a) {
   const Seeds seeds = read_seeds(a.seeds);
-  check_script_out(a, seeds);
+  a.script_out = checked_script_out(a, seeds);
   if (a.models.empty()) a.models = {""};
   std::vector<Cell> cells;
   for (const auto& model : a.models)
     for (const auto& knot : a.knots) cells.push_back(cell_of(a, knot, model));
   for (const Cell& c : cells) check_free(c.folder, c.knot, seeds, a.force);
+  check_outputs(a.out, {"results.csv"});
   for (const Cell& c : cells) make_folder(c.folder);
-  std::string results = "model,knot,seed,found,seconds,tied,moves given up\n";
+  validate::stop_asked = console::stop_requested;
+  std::string results = rows_to_keep(a.out + "/results.csv", cells, seeds);
   std::vector<Count> counts;
   counts.reserve(cells.size());
   for (const Cell& c : cells) counts.push_back(tie_all(a, c, seeds, results));
@@ -185,18 +209,24 @@ void add_tie_command(CLI::App& app, int& exit_code) {
   auto a = std::make_shared<Arguments>();
   tie->add_option("knot", a->knots, "Which of " + sim::knot_names())->required();
   tie->add_option("--models", a->models, "Instead of the scene's own: paper-1,paper-2,...; recordings in DIR/MODEL")
+      ->check(not_empty)
       ->delimiter(',');
   tie->add_option("--scene", a->scene, "Scene file (TOML); its node 0 must be fixed")
+      ->check(not_empty)
       ->default_str("scenes/paper.toml; for surgeon scenes/paper-long.toml");
   tie->add_option("--set", a->overrides, "key=value over the scene's own; repeatable")
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   tie->add_option("--seeds", a->seeds, "N or FIRST-LAST: another operator each")->capture_default_str();
-  tie->add_option("--out", a->out, "Folder for the recordings")->type_name("DIR")->capture_default_str();
+  tie->add_option("--out", a->out, "Folder for the recordings and results.csv, to which rows are added")
+      ->type_name("DIR")
+      ->check(not_empty)
+      ->capture_default_str();
   tie->add_flag("--force", a->force, "Replace the recordings of an earlier call");
   tie->add_option("--script-out", a->script_out, "Of one run that ties: what the hands wanted, as a gripper script")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->check(not_empty);
   tie->add_option("--script-within", a->script_within, "How near the script comes to it, in diameters of the thread")
       ->capture_default_str();
   tie->footer(kFooter);

@@ -5,7 +5,9 @@
 
 #include "host/knot/recognise.hpp"
 #include "host/lab/outcome.hpp"
+#include "host/lab/report.hpp"
 #include "host/lab/rig/virtual_rig.hpp"
+#include "host/lab/tie/recordings.hpp"
 #include "host/polyline_file.hpp"
 #include "sim_device/operator/knot_tier.hpp"
 
@@ -36,6 +38,12 @@ class Person final : public SeeingOperator {
 
 }  // namespace
 
+void check_tick(const scene::Scene& scene, const std::string& scene_file) {
+  if (scene.time.tick_s != rt::kPeriod_s)
+    throw Refusal(scene_file + ": key 'time.tick_s': found " + digits(scene.time.tick_s) +
+                  ", allowed 0.001 when hands are connected");
+}
+
 Tied tie_once(const scene::Scene& scene, const std::string& scene_file, const std::string& scene_toml,
               const std::string& knot, std::uint32_t seed, const std::filesystem::path& recording, HandRecord* hands) {
   auto made = sim::KnotTier::make(scene, knot, seed);
@@ -43,19 +51,20 @@ Tied tie_once(const scene::Scene& scene, const std::string& scene_file, const st
   Person person(std::get<sim::KnotTier>(std::move(made)), hands);
   Tied tied;
   tied.wanted = std::string(person.tier().knot().type) + " " + std::string(person.tier().knot().handedness);
-  std::filesystem::remove(recording);
+  UnfinishedRecording unfinished(recording);
   RigSetup setup;
   setup.scene = scene;
   setup.seed = seed;
   setup.scene_file = scene_file;
   setup.scene_toml = scene_toml + "\n# tie " + knot + "\n# seed " + std::to_string(seed);
   VirtualRig rig(setup, person);
-  rig.record(recording.string());
+  rig.record(unfinished.part());
   if (const auto why = rig.run(kMost_ticks, true)) throw std::runtime_error("the rig did not start: " + *why);
   tied.seconds = 1e-3 * static_cast<double>(rig.records.size());
   tied.missed = person.tier().missed();
   if (!person.is_done()) tied.missed.push_back("time");
-  const auto shape = host::read_polyline_log(recording.string(), std::nullopt);
+  const auto shape = host::read_polyline_log(unfinished.part(), std::nullopt);
+  unfinished.finish();
   const auto found = knot::recognise(shape.points, false);
   tied.found = found.type + " " + found.handedness;
   return tied;

@@ -21,10 +21,14 @@ struct Tied {
   [[nodiscard]] bool good() const { return wanted == found; }
 };
 
+/// The rig has one period, in which the thread makes one tick. @throws Refusal when the scene's tick is another one.
+void check_tick(const scene::Scene& scene, const std::string& scene_file);
+
 /// @param scene_toml as made by scene::recorded_text(); the operator's knot and seed are added.
-/// @param recording path of the LCM log; an existing file is replaced.  @param hands records the hands' motion.
-/// @throws Refusal for an unknown knot or a scene in which the operator cannot work; std::runtime_error when the rig
-/// does not start or the file cannot be created.
+/// @param recording path of the LCM log; an existing file is replaced when the new one is whole.  @param hands records
+/// the hands' motion.
+/// @throws Refusal for an unknown knot or a scene in which the operator cannot work; validate::Interrupted;
+/// std::runtime_error when the rig does not start or the file cannot be created.
 [[nodiscard]] Tied tie_once(const scene::Scene& scene, const std::string& scene_file, const std::string& scene_toml,
                             const std::string& knot, std::uint32_t seed, const std::filesystem::path& recording,
                             HandRecord* hands = nullptr);

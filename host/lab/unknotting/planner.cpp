@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/console/stop_signal.hpp"
-
 namespace ligature::lab {
 namespace {
 
@@ -42,7 +40,6 @@ std::vector<Pull> ranked(std::span<const Vec3> shape_W) {
 std::optional<Plan> plan_pull(std::span<const Vec3> shape_W, const scene::Scene& scene) {
   int tried = 0;
   for (const auto& pull : ranked(shape_W)) {
-    if (console::stop_requested()) break;
     ++tried;
     const auto result = try_pull(shape_W, scene, pull);
     if (result.finite && result.knot.type == "0_1") return Plan{pull, tried};

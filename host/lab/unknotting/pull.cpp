@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "host/lab/validate/proceed.hpp"
+
 namespace ligature::lab {
 namespace {
 
@@ -40,7 +42,8 @@ PullResult do_pull(physics::Simulation& thread, const scene::Scene& scene, const
   double t_s = 0.0;
   while (t_s < kTake_s + pull_s + kHold_s && result.finite) {
     const auto pose = scene::sample(keys, t_s);
-    thread.tick({away, physics::ToolInput{Vec3(pose.p_W_m.data()), Vec3(pose.v_W_m_per_s.data()), pose.grip}});
+    validate::proceed(thread, std::array{away, physics::ToolInput{Vec3(pose.p_W_m.data()),
+                                                                  Vec3(pose.v_W_m_per_s.data()), pose.grip}});
     result.peak_N = std::max(result.peak_N, thread.hand(physics::Hand::kRight).f_W.norm());
     result.finite = thread.diagnostics().finite;
     t_s += tick_s;

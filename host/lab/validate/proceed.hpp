@@ -16,10 +16,15 @@ inline bool (*stop_asked)() noexcept = []() noexcept { return false; };
 /// Number of ticks of all cases so far. To compute the cost of a tick, read this before and after a case.
 inline std::int64_t ticks_done = 0;
 
+/// To be called once a tick. @throws Interrupted
+inline void heed_stop() {
+  if (stop_asked()) throw Interrupted();
+}
+
 /// Runs one tick. @throws Interrupted
 template <class Thread, class... Input>
 void proceed(Thread& thread, const Input&... input) {
-  if (stop_asked()) throw Interrupted();
+  heed_stop();
   thread.tick(input...);
   ++ticks_done;
 }

@@ -67,6 +67,52 @@ def bad_input(folder):
         assert done.returncode == 2 and done.stderr.count("\n") == 1, (args, done)
 
 
+def refused_values():
+    """Values that once became a default, or passed a check of their range. They are refused before a file is read."""
+    for command, options in {"run": "--grippers --tie --out", "tie": "--scene --models --out --script-out", "play": "--out",
+                             "validate": "--only --accuracy --out", "published": "--out", "regress": "--expected --update --scenes",
+                             "rerun": "--out", "pareto": "--one --model --published --out", "fit": "--out",
+                             "stability": "--scenes --out", "bench": "--out"}.items():
+        for option in options.split():
+            done = lab(command, option, "")
+            assert done.returncode == 2 and done.stderr.count("\n") == 1, (command, option, done)
+            assert f"{option}: found ''" in done.stderr, (command, option, done.stderr)
+    for command, option, allowed in (("published", "--work", "1e+05 .. 1e+09"), ("play", "--tremor-mm", "0 .. 10"),
+                                     ("play", "--lost-share", "0 .. 0.5"), ("play", "--least", "0 .. 1"),
+                                     ("play", "--work-share", "0 .. 1")):
+        for value in ("nan", "inf", "-1"):
+            done = lab(command, option, value)
+            assert done.returncode == 2 and f"{option}: found '{value}', allowed {allowed}" in done.stderr, (option, value, done)
+    for wrong, says in ((["paper-4/0/1/4"], "allowed NODES 4 .. 5000"), (["paper-4/999999999/1/4"], "allowed NODES 4 .. 5000"),
+                        (["paper-4/50/1/0", "--ticks", "-5"], "--ticks: found '-5', allowed 1 .. 1e+06")):
+        done = lab("pareto", "--one", *wrong)
+        assert done.returncode == 2 and done.stderr.count("\n") == 1 and says in done.stderr, (wrong, done)
+    script = SCENES / "operators" / "suture-overhand.csv"
+    for command in (["tie", "overhand"], ["play", script, "--knot", "overhand"]):
+        done = lab(*command, "--scene", PAPER, "--seeds", "1", "--set", "time.tick_s=0.01")
+        assert done.returncode == 2, done
+        assert "paper.toml: key 'time.tick_s': found 0.01, allowed 0.001 when hands are connected" in done.stderr, done.stderr
+
+
+def refused_targets(folder):
+    """What is no regular file is not replaced, and no input is overwritten; both are seen before any work."""
+    weigh, pipe = folder / "pieces.csv", folder / "pipe"
+    text = "length_m,mass_kg\n1,7.9e-5\n1,8e-5\n2,16.2e-5\n"
+    weigh.write_text(text)
+    os.mkfifo(pipe)
+    for target in (pipe, "/dev/null", ".", folder / "nowhere" / "x"):
+        for command in (["fit", weigh], ["tie", "overhand", "--scene", PAPER, "--seeds", "1", "--out", folder / "tied"]):
+            done = lab(*command, "--out" if command[0] == "fit" else "--script-out", target)
+            assert done.returncode == 2 and done.stderr.count("\n") == 1 and done.stdout == "", (command, target, done)
+            assert "allowed a new or a regular file in a folder that exists" in done.stderr, done.stderr
+    assert pipe.is_fifo() and not (folder / "tied").exists()
+    (folder / "same.csv").symlink_to(weigh.name)
+    for other in (weigh, folder / "same.csv"):
+        for wrong, says in (([weigh, "--out", other], "is one of the measurements"), ([weigh, other], "is named twice")):
+            done = lab("fit", *wrong)
+            assert done.returncode == 2 and says in done.stderr and weigh.read_text() == text, (wrong, done)
+
+
 def good_run(folder):
     out = folder / "good"
     done = lab("run", PAPER, "--set", "suture.nodes=20", "--duration", "0.5", "--out", out, "--shape-every", "0.1")
@@ -94,6 +140,12 @@ def fitted(folder):
     scene.write_text(out.read_text() + "\n[hands]\ncoupling_N_per_m = 100\n")
     done = lab("run", scene, "--set", "suture.nodes=20", "--duration", "0.01", "--out", folder / "mine")
     assert done.returncode == 0, done
+    # The other lines are written, although one value is left out.
+    load = folder / "shorter.csv"
+    load.write_text("load_N,length_m\n0,0.5\n1,0.4\n2,0.3\n")
+    done = lab("fit", measured, load, "--out", out)
+    assert done.returncode == 3 and "left out" in done.stderr and "EA_N" in done.stderr, done
+    assert "density_kg_per_m" in out.read_text() and "EA_N" not in out.read_text() + done.stdout, (out.read_text(), done)
 
 
 def failed_run(folder):
@@ -150,6 +202,43 @@ def interruption(folder):
     assert "regress: interrupted in paper-overhand; what was measured before is above" in said, said
 
 
+def stopped_at(file, number, *args):
+    """Sends a signal once a file exists. @return exit code, errors"""
+    with subprocess.Popen([LAB, *map(str, args)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as command:
+        while command.poll() is None and not file.exists():
+            time.sleep(0.02)
+        command.send_signal(number)
+        try:
+            complaint = command.communicate(timeout=100)[1]
+        finally:
+            command.kill()
+    return command.returncode, complaint
+
+
+def interrupted_experiments(folder):
+    """An experiment that is interrupted has no verdict, and no table with cells that it did not measure."""
+    for step, command in (("default, N = 20", ["stability"]), ("overhand, N = 35", ["experiment", "knotting"]), ("N = 20", ["bench"]),
+                          ("stretch_N x", ["extremes"])):
+        out = folder / command[-1]
+        code, _, said = interrupted_in(step, *command, "--scenes", SCENES, "--out", out)
+        assert code == 130 and f"ligature-lab: {command[-1]}: interrupted; " in said, (command, code, said)
+        assert not list(out.iterdir()), list(out.iterdir())
+    out = folder / "models"
+    code, said = stopped_at(out / "models-shapes.csv.part", signal.SIGTERM, "experiment", "models", "--scenes", SCENES, "--out", out)
+    assert code == 130 and said.startswith("ligature-lab: models: interrupted; ") and not list(out.iterdir()), (code, said)
+
+
+def interrupted_play(folder):
+    """A long run ends at the signal; its recording, which is not whole, is removed."""
+    script = folder / "long.csv"
+    keys = [line for line in (SCENES / "operators" / "suture-overhand.csv").read_text().splitlines() if line.startswith("0,")]
+    script.write_text("\n".join(["time,hand,x,y,z,grip", *keys, keys[-1].replace("0,", "3000,", 1)]) + "\n")
+    out = folder / "played"
+    code, complaint = stopped_at(out / "overhand-1.lcmlog.part", signal.SIGTERM, "play", script, "--scene", SCENES / "suture-3-0.toml",
+                                 "--knot", "overhand", "--seeds", "1-2", "--out", out)
+    assert (code, complaint) == (130, "") and not list(out.glob("*")), (code, complaint, list(out.glob("*")))
+
+
 def interrupted_run(folder):
     """What was run is kept, and the exit code says that it is not the whole. trace.csv.part grows once the run has begun."""
     trace = folder / "trace.csv.part"
@@ -201,6 +290,12 @@ def recordings(folder):
     rows = list(csv.DictReader((folder / "results.csv").open()))
     assert rows[0]["knot"] == "overhand" and rows[0]["seed"] == "3" and rows[0]["found"].startswith("3_1"), rows
     assert len(rows) < 3
+    # Every recording has its row, and a later call adds its rows to those.
+    assert {path.name for path in folder.iterdir()} == {"results.csv", *(f"overhand-{row['seed']}.lcmlog" for row in rows)}
+    for _ in range(2):
+        lab("tie", "overhand", "--scene", PAPER, "--seeds", "8", "--force", "--out", folder)
+        assert list(csv.DictReader((folder / "results.csv").open()))[:-1] == rows
+    assert list(csv.DictReader((folder / "results.csv").open()))[-1]["seed"] == "8"
 
 
 def regression(folder):
@@ -224,6 +319,8 @@ def teaching():
 
 with tempfile.TemporaryDirectory() as name:
     bad_input(pathlib.Path(name))
+    refused_values()
+    refused_targets(pathlib.Path(name))
     good_run(pathlib.Path(name))
     fitted(pathlib.Path(name))
     failed_run(pathlib.Path(name))
@@ -233,6 +330,10 @@ with tempfile.TemporaryDirectory() as name:
     recordings(pathlib.Path(name))
 with tempfile.TemporaryDirectory() as name:
     interruption(pathlib.Path(name))
+with tempfile.TemporaryDirectory() as name:
+    interrupted_experiments(pathlib.Path(name))
+with tempfile.TemporaryDirectory() as name:
+    interrupted_play(pathlib.Path(name))
 with tempfile.TemporaryDirectory() as name:
     interrupted_run(pathlib.Path(name))
 with tempfile.TemporaryDirectory() as name:

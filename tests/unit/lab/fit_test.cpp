@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <iterator>
 #include <numbers>
 
 #include "host/lab/fit/shapes.hpp"
@@ -209,6 +210,46 @@ TEST(Fit, MeasuredOnTheRodItGivesTheScenesValues) {
     std::printf("%s: %g of %g\n", kTold[k].name, fitted.found[k]->value, lab.truth[k]);
     EXPECT_NEAR(fitted.found[k]->value / lab.truth[k], 1.0, 0.03) << kTold[k].name;
   }
+}
+
+// A thread that becomes shorter under a load has no EA: the fit runs away to a stiffness without end.
+TEST(Fit, AValueThatNoSceneTakesIsLeftOut) {
+  Lab lab;
+  std::vector<Measurement> all{lab.of("load", 0, {})};
+  all[0].rows = {{0.0, 0.5}, {1.0, 0.4}, {2.0, 0.3}};
+  auto fitted = fit(all);
+  const auto lines = leave_out_impossible(fitted);
+  EXPECT_FALSE(fitted.found[kEA]);
+  ASSERT_FALSE(lines.empty());
+  EXPECT_NE(lines.back().find("EA_N"), std::string::npos) << lines.back();
+  EXPECT_NE(lines.back().find(", allowed "), std::string::npos) << lines.back();
+}
+
+TEST(Fit, ValuesAreHeldAgainstTheRangesOfTheScene) {
+  Fitted fitted;
+  fitted.found[kDensity] = Estimate{1e5, 1.0};
+  fitted.found[kNatural] = Estimate{0.5, 1e-3};
+  fitted.found[kEA] = Estimate{6.8e14, 1e14};
+  fitted.found[kFriction] = Estimate{1001.0, 1.0};
+  fitted.found[kEI] = Estimate{3.8e-46, 0.0};  // the law does not depend on it any more
+  fitted.found[kBendDamping] = Estimate{std::nan(""), std::nan("")};
+  fitted.found[kDrag] = Estimate{5.0, 60.0};
+  const auto lines = leave_out_impossible(fitted);
+  const char* const begin[] = {"key 'suture.density_kg_per_m': found 1e+05, allowed number 1e-09 .. 10000",
+                               "key 'suture.EA_N': found 6.8e+14, allowed number 1e-06 .. 1e+09",
+                               "key 'contact.friction': found 1001, allowed number 0 .. 1000",
+                               "EI_N_m2: found 3.8e-46 +- 0, allowed a value that the rows tell",
+                               "damping_s: found nan +- nan, allowed",
+                               "air_drag_per_s: found 5 +- 60, allowed"};
+  ASSERT_EQ(lines.size(), std::size(begin));
+  for (std::size_t k = 0; k < lines.size(); ++k) EXPECT_TRUE(lines[k].starts_with(begin[k])) << lines[k];
+  for (std::size_t k = 0; k < kParameters; ++k) EXPECT_EQ(fitted.found[k].has_value(), k == kNatural) << kTold[k].name;
+}
+
+TEST(Fit, OfALabsReadingsNothingIsLeftOut) {
+  Lab lab;
+  auto fitted = fit(lab.all());
+  EXPECT_TRUE(leave_out_impossible(fitted).empty());
 }
 
 std::string refusal_of(const std::vector<std::string>& texts) {

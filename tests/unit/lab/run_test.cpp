@@ -10,6 +10,7 @@
 #include "host/lab/outcome.hpp"
 #include "ligature_source_dir.hpp"
 #include "tests/support/temp_folder.hpp"
+#include "tests/unit/lab/text_of.hpp"
 
 namespace ligature::lab {
 namespace {
@@ -74,6 +75,20 @@ TEST(Run, AHandThatIsNoNumberIsNamedAndNoStiffness) {
     EXPECT_EQ(s.failure,
               "diverged at tick 0 (t = 0.001 s), by a hand whose position or speed is no number, or beyond 1e9");
   }
+}
+
+TEST(Run, ARefusedOneLeavesTheFilesOfAnEarlierRun) {
+  Rehearsal r(load_scene_or_refuse(kScene, {"suture.nodes=20"}), {});
+  const std::filesystem::path folder = test::temp_folder() + "run_refused";
+  std::filesystem::create_directories(folder / "shape.csv");
+  for (const char* name : {"trace.csv", "summary.json"}) std::ofstream(folder / name) << "old";
+  EXPECT_THROW((void)run(r, {folder, 0.01, 0.01}), Refusal);
+  EXPECT_EQ(r.ticks(), 0);
+  EXPECT_EQ(text_of(folder / "trace.csv"), "old");
+  EXPECT_EQ(text_of(folder / "summary.json"), "old");
+  std::filesystem::remove(folder / "shape.csv");
+  (void)run(r, {folder, 0.01, 0.01});
+  EXPECT_EQ(lines_of(folder / "trace.csv").size(), 1u + 10u);
 }
 
 TEST(Run, RefusesBeforeItWrites) {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "firmware/control/passivity.hpp"
+#include "host/lab/validate/proceed.hpp"
 
 namespace ligature::lab {
 namespace {
@@ -50,6 +51,7 @@ double law(const Wall& w, const std::vector<double>& x, std::int64_t n) {
 }  // namespace
 
 WallRun press(const Wall& w, double time_s) {
+  validate::heed_stop();  // thousands of walls are pressed
   control::Passivity passivity(one_axis(w.device), kT_s, w.controller, 0.0);
   Mass mass{w.mass_kg + w.hand_mass_kg, w.damping_N_s_per_m + w.hand_N_s_per_m, w.hand_N_per_m, w.start_m};
   WallRun run;
