@@ -21,8 +21,8 @@ struct DeviceState {
 class Device {
  public:
   virtual ~Device() = default;
-  /// Sends the force and reads the state. May wait for the device, for about 10 ms at most. @return nothing when the
-  /// device did not answer or is disconnected; the next call tries again.
+  /// Sends the force and reads the state. May wait for the device: some 10 ms for an answer, and up to 2 s to connect
+  /// again. @return nothing when the device did not answer or is disconnected; the next call tries again.
   [[nodiscard]] virtual std::optional<DeviceState> exchange(const Vec& force_D_N) = 0;
   /// One line about why the last exchange returned nothing.
   [[nodiscard]] virtual std::string problem() const = 0;

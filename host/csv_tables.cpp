@@ -55,7 +55,8 @@ std::string forces_columns_help() {
          "  fault                              latched fault number, 0 none\n"
          "  flags                              sum of 1 period lost (values held), 2 deadline missed, 4/8 left/right\n"
          "                                     stale, 16/32 left/right force limited, 64 contact list full,\n"
-         "                                     128 the loop itself computed for longer than the bus leaves time\n"
+         "                                     128 the loop itself computed for longer than the bus leaves time,\n"
+         "                                     256 the thread was late, 512 the clock ended its tick\n"
          "  session                            1, 2, .. : run of the firmware within this log\n"
          "  HAND is left, then right.\n";
 }

@@ -39,6 +39,7 @@ ExportResult export_recording(const std::string& log_path, const ExportTargets& 
   for (const auto& sink : sinks) each.push_back(sink.get());
   console::Progress progress("export");
   ExportResult result = read_recording(log_path, facts, each, &progress);
+  for (const auto* sink : each) sink->check();
   for (auto* sink : each) sink->commit();
   return result;
 }

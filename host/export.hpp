@@ -17,6 +17,7 @@ struct ExportTargets {
 struct ExportResult {
   std::int64_t tick_rows = 0, shapes = 0, duplicates_left_out = 0, unreadable_messages = 0;
   std::int64_t left_out = 0;  // ticks of sessions beyond SessionTally::kMaxSessions, not exported
+  bool has_grasp = false;     // a hand held a node in at least one tick
   std::int64_t missing = 0;   // ticks missing between the first and the last tick of each session, summed
   std::string missing_ticks;  // "100..119, 400": the first missing ranges
   std::string damage;         // one line about damaged parts of the log; empty when it is intact

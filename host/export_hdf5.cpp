@@ -104,7 +104,9 @@ struct Events {
         text(group.id(), "text") {
     explain(time.id(), "s", kTimeMeaning);
     explain(tick.id(), "ticks", "period in which it happened");
-    explain(kind.id(), "", "1 state, 2 fault, 3 grasp, 4 release, 5 limit, 6 change of scene or parameter");
+    explain(kind.id(), "",
+            "1 state, 2 fault, 3 grasp, 4 release, 5 limit, 6 change of scene or parameter, 7 recorder, 8 refused "
+            "command, 9 wait");
     explain(hand.id(), "", "0 left, 1 right, -1 neither or both");
     explain(code.id(), "", "grasp, release: node; state: its number; fault: its number");
     explain(text.id(), "", "one line for people");

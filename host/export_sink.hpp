@@ -22,6 +22,9 @@ class ExportSink {
   virtual void add(const ligature_msg::status_t& status, double t_s) { (void)status, (void)t_s; }
   /// A note that a person typed into the recording. commit() writes all of them into the file, a line each.
   void note(const std::string& text) { notes_ += (notes_.empty() ? "" : "\n") + text; }
+  /// Called after the last message, before any sink's commit(). @throws BadInput when the recording has nothing of what
+  /// the sink was asked for; then no file is written.
+  virtual void check() const {}
   /// Completes the file and gives it its final name. @throws RunFailed.
   virtual void commit() = 0;
 

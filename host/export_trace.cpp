@@ -4,11 +4,14 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "host/atomic_file.hpp"
+#include "host/errors.hpp"
 #include "host/names.hpp"
+#include "host/text.hpp"
 
 namespace ligature::host {
 namespace {
@@ -32,6 +35,7 @@ class TraceSink final : public ExportSink {
   TraceSink(const TraceTarget& target, const RigFacts& facts, const std::string& source)
       : file_(target.path),
         target_(target),
+        source_(source),
         period_ns_(std::llround(facts.period_s * 1e9)),
         about_{{"source", source},
                {"scene_file", facts.scene_file},
@@ -41,6 +45,8 @@ class TraceSink final : public ExportSink {
   }
 
   void add(const Tick& tick, double t_s, int session) override {
+    first_s_ = std::min(first_s_, t_s);
+    last_s_ = std::max(last_s_, t_s);
     if (t_s < target_.from_s || t_s > target_.to_s) return;
     if (named_.insert(session).second) name_tracks(session);
     session_ = session;
@@ -59,6 +65,12 @@ class TraceSink final : public ExportSink {
     write({{"name", event.text}, {"ph", "i"}, {"s", "p"}, {"pid", session_}, {"tid", static_cast<int>(kEvents)}},
           zero_ns_ + event.tick * period_ns_, "",
           Json{{"tick", event.tick}, {"kind", event.kind}, {"code", event.code}});
+  }
+
+  void check() const override {
+    if (named_.empty())
+      throw BadInput(text("--trace-span: found %g .. %g s, where %s has no tick; allowed a part of %.3f .. %.3f s",
+                          target_.from_s, target_.to_s, source_.c_str(), first_s_, last_s_));
   }
 
   void commit() override {
@@ -142,7 +154,10 @@ class TraceSink final : public ExportSink {
 
   AtomicFile file_;
   TraceTarget target_;
+  std::string source_;
   std::int64_t period_ns_, zero_ns_ = 0;
+  // times of all ticks, also of those outside the span
+  double first_s_ = std::numeric_limits<double>::infinity(), last_s_ = -first_s_;
   Json about_;
   int session_ = 0;
   std::set<int> named_;

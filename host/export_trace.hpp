@@ -13,7 +13,8 @@ struct TraceTarget {
 };
 
 /// Writes when each phase of each tick ran, as a trace for ui.perfetto.dev (Chrome's Trace Event Format, JSON).
-/// Its tracks are in docs/analysis.md. @throws BadInput when the file cannot be created.
+/// Its tracks are in docs/analysis.md. @throws BadInput when the file cannot be created; the sink's check() throws it
+/// when the span has no tick.
 [[nodiscard]] std::unique_ptr<ExportSink> make_trace_sink(const TraceTarget& target, const RigFacts& facts,
                                                           const std::string& source);
 

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "host/damage_notice.hpp"
 #include "host/errors.hpp"
 #include "host/knot/common_name.hpp"
 #include "host/knot/recognise.hpp"
@@ -29,9 +30,7 @@ std::string json_line(const knot::KnotResult& found) {
 }
 
 std::string words(const knot::KnotResult& found, const Polyline& line) {
-  std::string result = found.type;
-  if (found.handedness != "none") result += " " + found.handedness;
-  if (const auto common = knot::common_name(found.type, found.handedness); !common.empty()) result += ", " + common;
+  std::string result = knot::full_name(found.type, found.handedness);
   for (std::size_t k = 0; k < found.candidates.size(); ++k)
     result += (k == 0 ? ", candidates: " : ", ") + found.candidates[k];
   if (found.alexander.empty())
@@ -53,6 +52,7 @@ std::string describe_knot(const KnotOptions& options) {
   if (options.at_s && std::abs(*line.time_s - *options.at_s) > kAtWithin_s)
     throw BadInput(options.file + text(": --at: found %g s, the nearest shape is at %.3f s; allowed up to %g s from it",
                                        *options.at_s, *line.time_s, kAtWithin_s));
+  tell_damage(options.file, line.damage);
   if (line.last_is_cut_off)
     std::fprintf(stderr, "ligature-host: %s: the last shape is cut off; took %s whole one\n", options.file.c_str(),
                  options.at_s ? "the nearest" : "the last");

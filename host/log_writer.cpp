@@ -14,6 +14,12 @@
 #include "host/log_format.hpp"
 
 namespace ligature::host {
+namespace {
+
+bool are_one(const struct stat& a, const struct stat& b) { return a.st_dev == b.st_dev && a.st_ino == b.st_ino; }
+
+}  // namespace
+
 /// Creates the file with O_EXCL, so that two recorders cannot use the same name: LCM's own writer truncates without
 /// asking.
 LogWriter::Lock::Lock(const std::string& path, bool replace)
@@ -33,14 +39,28 @@ LogWriter::Lock::~Lock() { ::close(file_); }
 
 bool LogWriter::Lock::is_of(int file) const {
   struct stat ours = {}, theirs = {};
-  return fstat(file_, &ours) == 0 && fstat(file, &theirs) == 0 && ours.st_dev == theirs.st_dev &&
-         ours.st_ino == theirs.st_ino;
+  return fstat(file_, &ours) == 0 && fstat(file, &theirs) == 0 && are_one(ours, theirs);
 }
 
-LogWriter::LogWriter(std::string path, bool replace) : path_(std::move(path)), lock_(path_, replace) {
-  file_ = std::make_unique<lcm::LogFile>(path_, "w");
-  if (!file_->good()) throw BadInput(path_ + ": cannot be written: " + std::strerror(errno));
-  if (!lock_.is_of(fileno(file_->getFilePtr()))) throw BadInput(path_ + ": was replaced while it was opened");
+bool LogWriter::Lock::is_at(const std::string& path) const {
+  struct stat ours = {}, theirs = {};
+  return fstat(file_, &ours) == 0 && stat(path.c_str(), &theirs) == 0 && are_one(ours, theirs);
+}
+
+LogWriter::LogWriter(std::string path, bool replace)
+    : path_(std::move(path)), lock_(std::make_unique<Lock>(path_, replace)) {
+  if (!replace) begin();
+}
+
+/// Empties the file, whose lock is held, and opens it for writing. If a file that was to be replaced has been moved
+/// away since it was locked, a new one is made in its place.
+void LogWriter::begin() {
+  if (!lock_->is_at(path_)) lock_ = std::make_unique<Lock>(path_, false);
+  auto file = std::make_unique<lcm::LogFile>(path_, "w");
+  if (!file->good()) throw BadInput(path_ + ": cannot be written: " + std::strerror(errno));
+  if (!lock_->is_of(fileno(file->getFilePtr()))) throw BadInput(path_ + ": was replaced while it was opened");
+  file_ = std::move(file);
+  has_begun_ = true;
 }
 
 LogWriter::~LogWriter() = default;
@@ -50,6 +70,7 @@ bool LogWriter::takes(std::string_view channel, Bytes data) {
 }
 
 void LogWriter::write(std::int64_t timestamp_us, std::string_view channel, Bytes data) {
+  if (!has_begun_) begin();
   append(timestamp_us, channel, data);
   append(timestamp_us, kCheckChannel, encoded({timestamp_us, log_checksum(channel, data)}));
   if (std::fflush(file_->getFilePtr()) != 0) fail();

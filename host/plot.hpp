@@ -14,11 +14,13 @@ void plot(const std::string& log_path, const std::string& out_path, bool by_fram
 void plot_thread(const std::string& log_path, const std::string& out_path);
 
 /// Draws the forces of two logs in one diagram and prints their differences. @param align what time 0 is: "start", the
-/// first tick of each log; "grasp", its first grasp. @param shift_s delays the second log by this time.
+/// first tick of each log; "grasp", its first grasp; a log without one is refused (BadInput). @param shift_s delays the
+/// second log by this time.
 void plot_comparison(const std::string& log_a, const std::string& log_b, const std::string& out_path,
                      const std::string& align, double shift_s);
 
-/// Draws the wake-up latencies of reports of `ligature-firmware doctor --report` with plots/plot_latency.py.
+/// Draws the wake-up latencies of reports of `ligature-firmware doctor --report` with plots/plot_latency.py. @throws as
+/// plot(); BadInput names the file that is no report, or one without a measurement.
 void plot_latency(const std::vector<std::string>& reports, const std::string& out_path);
 
 }  // namespace ligature::host

@@ -107,11 +107,16 @@ class PolylineReader {
     Columns found{-1, -1, -1, -1, -1, static_cast<int>(names.size())};
     for (int i = 0; i < found.count; ++i) {
       const std::string name = lower(names[static_cast<std::size_t>(i)]);
-      if (name == "x" || name == "x_m") found.x = i;
-      if (name == "y" || name == "y_m") found.y = i;
-      if (name == "z" || name == "z_m") found.z = i;
-      if (name == "t_s" || name == "time") found.time = i;
-      if (name == "node") found.node = i;
+      const auto take = [&](int& column) {
+        if (column >= 0)
+          refuse("header '" + shown(with_commas(names)) + "' has two columns for '" + name + "', allowed one");
+        column = i;
+      };
+      if (name == "x" || name == "x_m") take(found.x);
+      if (name == "y" || name == "y_m") take(found.y);
+      if (name == "z" || name == "z_m") take(found.z);
+      if (name == "t_s" || name == "time") take(found.time);
+      if (name == "node") take(found.node);
     }
     if (found.x < 0 || found.y < 0 || found.z < 0)
       refuse("header '" + shown(with_commas(names)) +
@@ -210,6 +215,7 @@ Polyline read_polyline_log(const std::string& path, std::optional<double> at_s) 
     chosen.radius_m = thread->radius_m;
     for (const auto& p : thread->p_W_m) chosen.points.push_back({p[0], p[1], p[2]});
   }
+  chosen.damage = log.damage();
   if (chosen.points.size() < 3)
     throw BadInput(path + ": holds no thread of 3 or more nodes; allowed: a log with messages on " +
                    std::string(kThreadChannel));

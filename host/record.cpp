@@ -102,12 +102,14 @@ void record(const RecordOptions& options) {
     throw;
   }
   std::fputs(recording->summary().c_str(), stdout);
-  if (tally.messages() > 0) {
+  if (log.bytes() > 0) {
     std::printf("%s: %.1f MB\n", options.out.c_str(), static_cast<double>(log.bytes()) * 1e-6);
     return;
   }
-  if (std::filesystem::is_regular_file(out)) std::filesystem::remove(out);  // removes the empty log
-  throw RunFailed("no message came on " + options.lcm_url +
+  // Removes the empty log. An old file that --force would have replaced stays.
+  if (std::filesystem::is_regular_file(out) && std::filesystem::file_size(out) == 0) std::filesystem::remove(out);
+  throw RunFailed((tally.messages() > 0 ? "no message that can be recorded came on " : "no message came on ") +
+                  options.lcm_url +
                   "; is ligature-firmware running with the same --lcm-url "
                   "in the same network namespace?");
 }

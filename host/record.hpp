@@ -13,7 +13,7 @@ struct RecordOptions {
   double duration_s = 0.0;  // 0: until a signal comes
   // folders whose flight recorder files may be read; empty: the default ones
   std::vector<std::filesystem::path> flight_folders{};
-  bool force = false;  // may replace an existing file
+  bool force = false;  // may replace an existing file, with the first message
   bool quiet = false;  // no progress display
 };
 

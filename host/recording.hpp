@@ -20,8 +20,8 @@ class Recording {
   /// Adds ticks that are missing between received ones, from the flight recorder.
   void fill() { fetch(GapFiller::Ends::kOpen); }
   /// Adds missing ticks from the flight recorder for the last time, also those after each session's last received tick.
-  /// @param is_quiet true: nothing is being sent any more. false: the newest session still runs, and its end is not
-  /// looked for.
+  /// @param is_quiet true: nothing is being sent any more. false: the newest session still runs, so that it has no end
+  /// is not reported.
   void finish(bool is_quiet);
 
   /// Lines that say what was recorded, lost and fetched; complete after finish().

@@ -72,6 +72,7 @@ class Walk {
 
   void write(const ligature_msg::tick_t& tick) {
     ++result_.tick_rows;
+    result_.has_grasp |= tick.grasped_node[0] >= 0 || tick.grasped_node[1] >= 0;
     for (auto* sink : sinks_) sink->add(tick, facts_.time_s(tick.tick), session_ + 1);
   }
 

@@ -47,21 +47,14 @@ std::string hand_row(const LogSummary& s, std::size_t hand) {
   return row(text("force %s", std::string(kHandNames[hand]).c_str()).c_str(), value);
 }
 
-/// Type, handedness and common name of a knot.
-std::string knot_name(const KnotSpan& knot) {
-  std::string words = knot.type;
-  if (knot.handedness != "none") words += " " + knot.handedness;
-  if (const auto common = knot::common_name(knot.type, knot.handedness); !common.empty()) words += ", " + common;
-  return words;
-}
-
 std::string knot_words(const LogSummary& s) {
   if (s.knots.empty()) return "no shape recorded";
   if (const auto* before = s.untied())
-    return text("0_1 (no knot); untied at %.2f s, before that %s", s.knot_since_s(), knot_name(*before).c_str());
+    return text("0_1 (no knot); untied at %.2f s, before that %s", s.knot_since_s(),
+                knot::full_name(before->type, before->handedness).c_str());
   const auto& last = s.knots.back();
   if (last.type == "0_1") return "0_1 (no knot)";
-  std::string words = knot_name(last);
+  std::string words = knot::full_name(last.type, last.handedness);
   words += text(s.was_tied() ? "; first tied at %.2f s" : "; there in the first recorded shape, at %.2f s",
                 s.knot_first_s());
   if (s.knot_since_s() > s.knot_first_s()) words += text(", unchanged since %.2f s", s.knot_since_s());
@@ -146,11 +139,12 @@ std::string report_json(const LogSummary& s) {
   Json hands, faults = Json::array(), history = Json::array(), knot = nullptr;
   for (std::size_t hand = 0; hand < 2; ++hand) {
     const auto& felt = s.ticks.hands()[hand];
-    hands[std::string(kHandNames[hand])] = {{"peak_N", felt.peak_N},
-                                            {"peak_s", s.facts.time_s(felt.peak_tick)},
-                                            {"mean_N", felt.mean_N()},
-                                            {"grasp_s", s.facts.time_s(felt.grasp_ticks)},
-                                            {"limited_ticks", felt.limited_ticks}};
+    hands[std::string(kHandNames[hand])] = {
+        {"peak_N", felt.peak_N},
+        {"peak_s", felt.peak_tick < 0 ? Json(nullptr) : Json(s.facts.time_s(felt.peak_tick))},
+        {"mean_N", felt.mean_N()},
+        {"grasp_s", s.facts.time_s(felt.grasp_ticks)},
+        {"limited_ticks", felt.limited_ticks}};
   }
   for (const auto& entry : s.ticks.faults())
     faults.push_back({{"t_s", s.facts.time_s(entry.tick)}, {"fault", entry.fault}});

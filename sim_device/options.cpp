@@ -35,6 +35,9 @@ CLI::Validator within(double low, double high) {
           "FLOAT in [" + CLI::detail::to_string(low) + " - " + CLI::detail::to_string(high) + "]"};
 }
 
+/// Refuses an empty name of a file: it would silently count as if the option was not given.
+std::string not_empty(const std::string& name) { return name.empty() ? "found '', allowed a name" : ""; }
+
 }  // namespace
 
 std::optional<Hand> hand_of(const std::string& hold) {
@@ -61,28 +64,32 @@ std::variant<Options, int> parse_options(int argc, char** argv) {
   app.set_version_flag("--version", "ligature-device " LIGATURE_VERSION);
   app.add_option("--hand", hand, "Which hand of the script")->required()->check(CLI::IsMember({"left", "right"}));
   app.add_option("--bus", o.bus, "local:/path/socket (made and served here) or socketcan:interface")->required();
-  app.add_option("--scene", o.scene,
-                 "Scene file; gives the workspace: hands.workspace_scale, hands.workspace_origin_m");
+  app.add_option("--scene", o.scene, "Scene file; gives the workspace: hands.workspace_scale, hands.workspace_origin_m")
+      ->check(not_empty);
   app.add_option("--set", o.overrides, "key=value over the scene, as often as needed")
       ->needs("--scene")
       ->allow_extra_args(false);
   app.add_option(
-      "--operator", o.script,
-      "Script, CSV: time,hand,x,y,z,grip in world metres; or the word page: a person moves the hand from the "
-      "page of ligature-host view; or tie:KNOT[:SEED]: an operator ties overhand, figure-eight, square, granny or "
-      "surgeon by looking at the thread; or untie[:SEED]: unties a loose knot in the same way; without it the hand "
-      "rests");
+         "--operator", o.script,
+         "Script, CSV: time,hand,x,y,z,grip in world metres; or the word page: a person moves the hand from the "
+         "page of ligature-host view; or tie:KNOT[:SEED]: an operator ties overhand, figure-eight, square, granny or "
+         "surgeon by looking at the thread; or untie[:SEED]: unties a loose knot in the same way; without it the hand "
+         "rests")
+      ->check(not_empty);
   app.add_option("--lcm-url", o.lcm_url, "LCM network of the rig, for --operator page, tie: and untie")
       ->capture_default_str();
-  app.add_option("--faults", o.faults, "Fault script (TOML, see scenes/faults): what shall go wrong, and when");
+  app.add_option("--faults", o.faults, "Fault script (TOML, see scenes/faults): what shall go wrong, and when")
+      ->check(not_empty);
   app.add_flag("--exit-when-done", o.exit_when_done, "End after the script, once the dead-man is let go");
-  app.add_option("--stats", o.stats, "At the end, write JSON: SYNCs, bus load, watchdog trips, final torque");
+  app.add_option("--stats", o.stats, "At the end, write JSON: SYNCs, bus load, watchdog trips, final torque")
+      ->check(not_empty);
   app.add_flag("--rt", o.real_time, "Ask for SCHED_FIFO and locked memory; runs on with a warning when refused");
   app.add_option("--cpu", o.cpu, "Stay on this CPU")->check(within(0, 1023));
   app.add_option(
-      "--device", o.device,
-      "Device record (TOML, see scenes/devices), also names the drives: CiA 402, ODrive, moteus; without it the "
-      "Omni class");
+         "--device", o.device,
+         "Device record (TOML, see scenes/devices), also names the drives: CiA 402, ODrive, moteus; without it the "
+         "Omni class")
+      ->check(not_empty);
   const auto known_hold = [](const std::string& word) {
     return hand_of(word) ? std::string() : "found '" + word + "', allowed loose, light, firm, clenched, none or 0 .. 1";
   };

@@ -1,6 +1,7 @@
 #include "firmware/app/doctor.hpp"
 
 #include <signal.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -9,10 +10,9 @@
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <optional>
-#include <sstream>
+#include <span>
 #include <thread>
 
 #include "firmware/app/admission.hpp"
@@ -28,6 +28,7 @@
 #include "firmware/platform/idle_guard.hpp"
 #include "firmware/platform/monotonic_clock.hpp"
 #include "firmware/platform/realtime.hpp"
+#include "firmware/telemetry/disk.hpp"
 #include "protocol/device/device_file.hpp"
 
 namespace ligature::app {
@@ -246,14 +247,32 @@ std::string histogram(const rt::DurationStatistics& wakeup, const std::vector<st
 
 namespace {
 
-/// Writes to PATH.part and then renames that file, so that nobody ever reads half a report.
+/// The file that a report ends up in: a link is kept, and its target replaced.
+std::filesystem::path place_of_report(const std::string& path) {
+  std::error_code none;
+  const auto target = std::filesystem::canonical(path, none);
+  return target.empty() ? std::filesystem::absolute(path, none) : target;
+}
+
+/// Why no report can be written to `path`; empty: one can. The report is renamed to this name, which would turn a
+/// device or a pipe into a regular file.
+std::string objection_to_report(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code none;
+  const auto found = fs::status(path, none);
+  const bool is_loose_link = !fs::exists(found) && fs::is_symlink(fs::symlink_status(path, none));
+  if (is_loose_link || (fs::exists(found) && !fs::is_regular_file(found)))
+    return "is no regular file, allowed one or a new name";
+  if (access(place_of_report(path).parent_path().c_str(), W_OK | X_OK) != 0)
+    return "cannot be written, allowed a file in a folder that exists";
+  return {};
+}
+
+/// Writes the whole report or nothing, so that nobody ever reads half a report; an older report stays until then.
 bool write_report(const std::string& path, const DoctorReport& report) {
-  const std::string part = path + ".part";
-  std::ofstream file(part);
-  file << to_json(report) << std::flush;
-  std::error_code problem;
-  if (file.good()) std::filesystem::rename(part, path, problem);
-  return file.good() && !problem;
+  if (!objection_to_report(path).empty()) return false;  // the path may have changed since the start
+  const std::string text = to_json(report);
+  return telemetry::write_whole_file(place_of_report(path).string(), std::as_bytes(std::span(text)));
 }
 
 /// The checks that take time: hardware, CAN, wake-ups. Adds their rows to the report and prints them.
@@ -322,6 +341,12 @@ int compare_files(const std::vector<std::string>& files) {
 
 int doctor(const DoctorOptions& options) {
   if (!options.compare.empty()) return compare_files(options.compare);
+  // before the measurement, which may take hours
+  const auto objection = options.report.empty() ? std::string() : objection_to_report(options.report);
+  if (!objection.empty()) {
+    std::fprintf(stderr, "ligature-firmware: --report %s: %s\n", options.report.c_str(), objection.c_str());
+    return 2;
+  }
   struct sigaction action {};
   action.sa_handler = [](int) { g_stop = true; };
   sigaction(SIGINT, &action, nullptr);
@@ -350,10 +375,6 @@ int doctor(const DoctorOptions& options) {
     }
     report.slack_us = std::get<Slack>(slack).us;
     drivers_problem = std::get<Slack>(slack).problem;
-  }
-  if (!options.report.empty() && !write_report(options.report, report)) {
-    std::fprintf(stderr, "ligature-firmware: --report %s: cannot be written\n", options.report.c_str());
-    return 2;
   }
   const platform::Machine machine{"/", ip_details};
   report.checks = platform::check_machine(machine, report.core);

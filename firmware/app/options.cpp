@@ -40,6 +40,9 @@ CLI::Validator within(double low, double high) {
           "in [" + allowed + "]"};
 }
 
+/// Refuses an empty name of a file or folder: it would silently count as if the option was not given.
+std::string not_empty(const std::string& name) { return name.empty() ? "found '', allowed a name" : ""; }
+
 /// Error text that names an unknown command. The library CLI11 would only say that a command is missing.
 std::string unknown_command(const CLI::App& app, int argc, const char* const* argv) {
   if (argc < 2 || argv[1][0] == '-') return {};
@@ -53,7 +56,8 @@ std::string unknown_command(const CLI::App& app, int argc, const char* const* ar
 
 void add_scene(CLI::App& command, std::string& scene, std::vector<std::string>& overrides) {
   command.add_option("--scene", scene, "scene file (TOML): the thread, its world, the coupling to the hands")
-      ->required();
+      ->required()
+      ->check(not_empty);
   command.add_option("--set", overrides, "override a key of the scene: key=value, may be given again")
       ->allow_extra_args(false);
 }
@@ -87,7 +91,8 @@ void add_run(CLI::App& run, RunOptions& o) {
   add_scene(run, o.scene, o.overrides);
   run.add_option("--left", o.left, "bus of the left hand: local:/path/socket or socketcan:INTERFACE")->required();
   run.add_option("--right", o.right, "bus of the right hand")->required();
-  run.add_option("--device", o.device, "device record (TOML, see scenes/devices) of both hands; default: omni-class");
+  run.add_option("--device", o.device, "device record (TOML, see scenes/devices) of both hands; default: omni-class")
+      ->check(not_empty);
   run.add_flag("--override-passivity", o.override_passivity,
                "take a coupling stiffer than the device can render stably (docs/haptics.md)");
   run.add_flag("--accept-no-drive-watchdog", o.accept_no_drive_watchdog,
@@ -110,6 +115,7 @@ void add_run(CLI::App& run, RunOptions& o) {
       ->capture_default_str();
   run.add_option("--recorder", o.recorder,
                  "flight recorder: every tick to this file, read by 'ligature-host export'; none = off")
+      ->check(not_empty)
       ->capture_default_str();
   run.add_option("--recorder-s", o.recorder_s, "seconds that it goes back, 0.7 MB each")
       ->check(within(5, 3600))
@@ -117,7 +123,8 @@ void add_run(CLI::App& run, RunOptions& o) {
   run.add_option("--wait-s", o.wait_s, "how long to wait for the hands to be there")
       ->check(within(0.0, 3600.0))
       ->capture_default_str();
-  run.add_option("--scenes", o.scenes, "folder of the scenes that a command may load (default: where --scene is)");
+  run.add_option("--scenes", o.scenes, "folder of the scenes that a command may load (default: where --scene is)")
+      ->check(not_empty);
   add_budget(run, o.budget_percent);
   add_no_loss(run, o.no_loss_m_per_s);
   run.add_flag("--force", o.force, "run a scene that is not admitted (see 'admit'); the recording says so");
@@ -173,7 +180,8 @@ void add_admit(CLI::App& admit, AdmitOptions& o) {
   add_scene(admit, o.scene, o.overrides);
   add_budget(admit, o.budget_percent);
   add_no_loss(admit, o.no_loss_m_per_s);
-  admit.add_option("--device", o.device, "device record (TOML) whose drives are on the buses; default: omni-class");
+  admit.add_option("--device", o.device, "device record (TOML) whose drives are on the buses; default: omni-class")
+      ->check(not_empty);
   add_can(admit, o.can,
           "SocketCAN interface whose driver's time counts, may be given again; sends frames on it for 1 s");
   admit.add_option("--seconds", o.seconds, "how long to try")->check(within(0.1, 3600.0))->capture_default_str();
@@ -192,7 +200,8 @@ void add_rehearse(CLI::App& rehearse, RehearseOptions& o) {
   rehearse.footer(kRehearseHelp);
   add_scene(rehearse, o.scene, o.overrides);
   add_no_loss(rehearse, o.no_loss_m_per_s);
-  rehearse.add_option("--text-from", o.text_from, "file with the scene's text, when --scene only names it");
+  rehearse.add_option("--text-from", o.text_from, "file with the scene's text, when --scene only names it")
+      ->check(not_empty);
 }
 
 void add_doctor(CLI::App& doctor, DoctorOptions& o) {
@@ -203,13 +212,18 @@ void add_doctor(CLI::App& doctor, DoctorOptions& o) {
   doctor.add_option("--hours", o.hours, "the same in hours")->check(within(1e-4, 1000.0))->excludes(seconds);
   doctor.add_flag("--load", o.load,
                   "keep memory, disk, CPU and network busy meanwhile: four processes that end by themselves");
-  doctor.add_option(
-      "--scene", o.scene,
-      "judge wake-ups by what this scene leaves (default with --hours, --load, --report: a scene with all "
-      "default values; otherwise: 100 and 300 us)");
-  doctor.add_option("--report", o.report, "JSON file for everything found, with wake-ups in bins of 1 us");
-  doctor.add_option("--compare", o.compare, "print two reports side by side, and do nothing else")->expected(2);
-  doctor.add_option("--device", o.device, "device record (TOML): also says what its drives cannot promise");
+  doctor
+      .add_option("--scene", o.scene,
+                  "judge wake-ups by what this scene leaves (default with --hours, --load, --report: a scene with all "
+                  "default values; otherwise: 100 and 300 us)")
+      ->check(not_empty);
+  doctor.add_option("--report", o.report, "JSON file for everything found, with wake-ups in bins of 1 us")
+      ->check(not_empty);
+  doctor.add_option("--compare", o.compare, "print two reports side by side, and do nothing else")
+      ->expected(2)
+      ->check(not_empty);
+  doctor.add_option("--device", o.device, "device record (TOML): also says what its drives cannot promise")
+      ->check(not_empty);
   doctor
       .add_option("--watchdog-ms", o.watchdog_ms,
                   "the --watchdog-ms that `run` will have; what the drives of --device do depends on it")

@@ -3,6 +3,8 @@
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
@@ -19,6 +21,7 @@ namespace {
 
 constexpr rlim_t kMostMemory_bytes = rlim_t{1} << 30;
 constexpr rlim_t kMostCpu_s = 6;
+constexpr rlim_t kMostWords_bytes = 64 * 1024;
 constexpr int kNiceness = 10;
 
 /// Sets a resource limit of this process. For CPU time, the soft limit raises SIGXCPU, by which the parent knows the
@@ -26,6 +29,14 @@ constexpr int kNiceness = 10;
 void limit(int what, rlim_t most) {
   const rlimit both{most, what == RLIMIT_CPU ? most + 1 : most};
   setrlimit(static_cast<__rlimit_resource>(what), &both);
+}
+
+/// Largest size of a file that this process may write to. With 0, SIGXFSZ would end the process at its first word where
+/// stderr is a file, and the reason of a refusal would be lost. The file may hold other text already.
+rlim_t most_file_bytes() {
+  struct stat found {};
+  const bool is_file = fstat(STDERR_FILENO, &found) == 0 && S_ISREG(found.st_mode);
+  return kMostWords_bytes + (is_file ? static_cast<rlim_t>(found.st_size) : 0);
 }
 
 /// Limits this process's memory, CPU time and files, so that no scene can exhaust the machine. Builds with sanitizers
@@ -36,7 +47,7 @@ void bound_this_process() {
   limit(RLIMIT_CPU, kMostCpu_s);
 #endif
   limit(RLIMIT_CORE, 0);
-  limit(RLIMIT_FSIZE, 0);
+  limit(RLIMIT_FSIZE, most_file_bytes());
   setpriority(PRIO_PROCESS, 0, kNiceness);
   prctl(PR_SET_PDEATHSIG, SIGKILL);  // die with the parent: the verdict would have no reader
 }

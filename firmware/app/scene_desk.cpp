@@ -127,9 +127,13 @@ std::optional<ligature_msg::ack_t> SceneDesk::request(const ligature_msg::comman
   const std::string text = command.text.substr(0, 100);
   if (const auto why = is_scene ? prepare_scene(text) : prepare_parameter(text, command.value); !why.empty())
     return refused(why);
+  try {
+    building_ = std::async(std::launch::async, [this, setup = next_, is_scene] { return build(setup, !is_scene); });
+  } catch (const std::exception& error) {  // no room for a thread
+    return refused(error.what());
+  }
   asked_ = command;
   busy_ = true;
-  building_ = std::async(std::launch::async, [this, setup = next_, is_scene] { return build(setup, !is_scene); });
   return std::nullopt;
 }
 
@@ -174,9 +178,18 @@ SceneDesk::Outcome SceneDesk::answer(const std::string& why, std::optional<Chang
   return outcome;
 }
 
+/// What build() has returned, or why it threw.
+std::variant<SceneDesk::Built, std::string> SceneDesk::built() {
+  try {
+    return building_.get();
+  } catch (const std::exception& error) {  // mostly out of memory; the scene in force goes on
+    return "the scene cannot be built (" + std::string(error.what()) + ")";
+  }
+}
+
 std::optional<SceneDesk::Outcome> SceneDesk::poll() {
   if (building_.valid() && building_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
-    auto result = building_.get();
+    auto result = built();
     if (const auto* why = std::get_if<std::string>(&result)) {
       busy_ = false;
       return answer(*why);

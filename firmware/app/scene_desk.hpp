@@ -90,6 +90,7 @@ class SceneDesk {
   [[nodiscard]] std::string prepare_parameter(const std::string& key, double value);
   [[nodiscard]] long work_of_this_machine(const Plan& plan) const;
   [[nodiscard]] std::variant<Built, std::string> build(Setup setup, bool keeps_motion) const;
+  [[nodiscard]] std::variant<Built, std::string> built();
   [[nodiscard]] Outcome answer(const std::string& why, std::optional<Changed> changed = {}) const;
 
   RunOptions options_;

@@ -7,11 +7,17 @@
 #include <fstream>
 #include <sstream>
 
+#include "firmware/platform/realtime.hpp"
+
 namespace ligature::platform {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr int kPriority = 80;
+#ifdef __aarch64__
+constexpr const char* kArchitecture = "arm64";  // as Debian names it
+#else
+constexpr const char* kArchitecture = "amd64";
+#endif
 constexpr long kReceiveBuffer = 4'194'304;
 constexpr unsigned kMulticast = 0xEFFF4C43;  // 239.255.76.67, the default LCM group
 constexpr unsigned kCapIpcLock = 14, kCapSysNice = 23;
@@ -35,7 +41,8 @@ std::string cpu(int core) { return "sys/devices/system/cpu/cpu" + std::to_string
 Check kernel(const std::string& root) {
   const std::string release = text_of(root + "proc/sys/kernel/osrelease");
   if (text_of(root + "sys/kernel/realtime") == "1") return good("kernel", release + ", PREEMPT_RT");
-  return {Grade::kFail, "kernel", release + ", not PREEMPT_RT", "apt install linux-image-rt-amd64 && reboot"};
+  return {Grade::kFail, "kernel", release + ", not PREEMPT_RT",
+          std::string("apt install linux-image-rt-") + kArchitecture + " && reboot"};
 }
 
 /// The soft limit in proc/self/limits; "unlimited" becomes a very large number.
@@ -64,7 +71,7 @@ constexpr const char* kLimits = "install limits.d/ligature.conf, join group 'rea
 Check priority_limit(const std::string& root) {
   if (has_capability(root, kCapSysNice)) return good("real-time priority", "allowed by CAP_SYS_NICE");
   const long allowed = limit(root, "Max realtime priority");
-  if (allowed >= kPriority) return good("real-time priority", "up to " + amount(allowed));
+  if (allowed >= kLoopPriority) return good("real-time priority", "up to " + amount(allowed));
   return {Grade::kFail, "real-time priority", "up to " + amount(allowed) + ", wanted 80", kLimits};
 }
 
@@ -176,8 +183,9 @@ double number_after(const std::string& text, const std::string& word) {
   return at == std::string::npos ? -1.0 : std::strtod(text.c_str() + at + word.size(), nullptr);
 }
 
-/// Checks that the real-time loop's core handles no interrupt of the CAN interface.
+/// Checks that the real-time loop's core handles no interrupt of the CAN interface, which may have several.
 Check interrupts(const std::string& root, const std::string& interface, int core) {
+  std::string numbers;
   std::istringstream lines(text_of(root + "proc/interrupts"));
   for (std::string line; std::getline(lines, line);) {
     if ((line + " ").find(" " + interface + " ") == std::string::npos) continue;
@@ -186,9 +194,11 @@ Check interrupts(const std::string& root, const std::string& interface, int core
       return {Grade::kWarn, "CAN interrupt",
               interface + ": irq " + number + " may come to core " + std::to_string(core),
               "echo 0 > /proc/irq/" + number + "/smp_affinity_list"};
-    return good("CAN interrupt", interface + ": irq " + number + " kept off core " + std::to_string(core));
+    numbers += (numbers.empty() ? "" : ", ") + number;
   }
-  return good("CAN interrupt", interface + ": none of its own");
+  return good("CAN interrupt",
+              interface + (numbers.empty() ? ": none of its own"
+                                           : ": irq " + numbers + " kept off core " + std::to_string(core)));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "host/commands.hpp"
 #include "host/commands/options.hpp"
 #include "host/csv_tables.hpp"
+#include "host/damage_notice.hpp"
 #include "host/errors.hpp"
 #include "host/export.hpp"
 
@@ -76,8 +77,7 @@ void add_export(CLI::App& app) {
     for (const auto& target : targets) refuse_same_file(options->log, target);
     refuse_twins(targets);
     const auto result = export_recording(options->log, options->targets);
-    if (!result.damage.empty())
-      std::fprintf(stderr, "ligature-host: %s: %s\n", options->log.c_str(), result.damage.c_str());
+    tell_damage(options->log, result.damage);
     std::printf("exported %lld ticks and %lld shapes", static_cast<long long>(result.tick_rows),
                 static_cast<long long>(result.shapes));
     if (result.duplicates_left_out)

@@ -13,8 +13,8 @@ void add_knot(CLI::App& app) {
   const auto options = std::make_shared<KnotOptions>();
   command
       ->add_option("file", options->file,
-                   "columns x,y,z (or x_m,y_m,z_m), by name or in this order, parted by commas, semicolons or blanks; "
-                   "a shape.csv; or an LCM log")
+                   "columns x,y,z (or x_m,y_m,z_m) by name, parted by commas, semicolons or blanks; without a header "
+                   "three columns are x,y,z, and four are row number,x,y,z; a shape.csv; or an LCM log")
       ->required();
   auto* closed = command->add_flag("--closed", options->closed, "the last point joins the first");
   command->add_flag("--open", options->open, "it does not")->excludes(closed);

@@ -19,7 +19,7 @@ void add_record(CLI::App& app) {
       ->add_option("--flight-folder", options->flight_folders,
                    "folder whose flight recorders fill gaps; default: where ligature-firmware and its service put it")
       ->check(CLI::ExistingDirectory);
-  command->add_flag("--force", options->force, "replace an existing file");
+  command->add_flag("--force", options->force, "replace an existing file, which stays until a message comes");
   command->add_flag("--quiet", options->quiet, "no progress");
   command->footer(
       "Counts every tick while it writes and names those that never came. It does not end when the firmware does: a\n"

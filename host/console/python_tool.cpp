@@ -19,6 +19,7 @@ namespace ligature::console {
 namespace {
 
 namespace fs = std::filesystem;
+constexpr int kBadInput = 2;  // exit code of a script whose input file is wrong
 
 std::string find_script(const std::string& name, const fs::path& source_folder) {
   std::error_code none;
@@ -34,7 +35,8 @@ std::string find_script(const std::string& name, const fs::path& source_folder) 
 /// removes its unfinished output file.
 int status_of(pid_t child) {
   constexpr int kLook_ms = 20;
-  int status = 0;
+  int status =
+      127 << 8;  // exit code 127; stays if waitpid() fails, as where the parent of this process ignored SIGCHLD
   bool is_told = false;
   for (;;) {
     const pid_t ended = waitpid(child, &status, WNOHANG);
@@ -101,7 +103,9 @@ PythonTool::PythonTool(const std::string& script, const fs::path& source_folder)
 void PythonTool::run(const std::vector<std::string>& arguments, const std::string& complaints) const {
   std::vector<std::string> words{python_, script_};
   words.insert(words.end(), arguments.begin(), arguments.end());
-  if (const int code = wait_for(words, complaints); code != 0)
+  const int code = wait_for(words, complaints);
+  if (code == kBadInput) throw host::BadInput(last_line(complaints));
+  if (code != 0)
     throw host::RunFailed(fs::path(script_).filename().string() + ": " + python_ + " ended with " +
                           std::to_string(code) + ": " + last_line(complaints) +
                           "; remedy for a missing package: scripts/setup");

@@ -28,8 +28,8 @@ class PythonTool {
   /// @throws BadInput as find_python(); RunFailed when the script is missing.
   PythonTool(const std::string& script, const std::filesystem::path& source_folder);
 
-  /// Runs the script without a shell and waits; its stderr goes to the file `complaints`. @throws RunFailed with the
-  /// last line of that file.
+  /// Runs the script without a shell and waits; its stderr goes to the file `complaints`. @throws with the last line of
+  /// that file: BadInput when the script ends with exit code 2, RunFailed when it fails otherwise.
   void run(const std::vector<std::string>& arguments, const std::string& complaints) const;
 
  private:

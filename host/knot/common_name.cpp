@@ -10,4 +10,11 @@ std::string common_name(const std::string& type, const std::string& handedness) 
   return "";
 }
 
+std::string full_name(const std::string& type, const std::string& handedness) {
+  std::string words = type;
+  if (handedness != "none") words += " " + handedness;
+  if (const auto common = common_name(type, handedness); !common.empty()) words += ", " + common;
+  return words;
+}
+
 }  // namespace ligature::knot

@@ -19,10 +19,14 @@ COLOURS = {"a": "#0072B2", "b": "#D55E00", "difference": "#444444"}
 HANDS = ("left", "right")
 
 
-def zero_of(column, time, align):
-    """Time that becomes 0: of the first grasp for align "grasp", else (or without any grasp) of the first row."""
+def zero_of(name, column, time, align):
+    """Time that becomes 0: of the first grasp for align "grasp", else of the first row."""
+    if align != "grasp":
+        return time[0]
     held = np.flatnonzero((column["left_node"] >= 0) | (column["right_node"] >= 0))
-    return time[held[0]] if align == "grasp" and len(held) else time[0]
+    if not len(held):
+        raise ValueError(f"{name}: has no grasp; align by start")
+    return time[held[0]]
 
 
 def difference(time_a, force_a, time_b, force_b):
@@ -41,7 +45,7 @@ def draw(tables, out, align, shift_s):
     recordings = []
     for (path, name), later_s in zip(tables, (0.0, shift_s)):
         column, time = read(path)
-        recordings.append((name, column, time - zero_of(column, time, align) + later_s))
+        recordings.append((name, column, time - zero_of(name, column, time, align) + later_s))
     (name_a, a, time_a), (name_b, b, time_b) = recordings
     figure, axes = plt.subplots(4, 1, sharex=True, figsize=(12, 8.5), dpi=130, height_ratios=[3, 1.3, 3, 1.3],
                                 layout="constrained")

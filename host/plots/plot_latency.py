@@ -1,7 +1,7 @@
 """Draws the wake-up latencies of reports of `ligature-firmware doctor --report`: how many wake-ups were how late.
 
 python3 plot_latency.py report.json [report.json ..] --out latency.png
-Needs numpy and matplotlib. The picture appears under its name only when it is complete.
+Needs matplotlib. The picture appears under its name only when it is complete. Exit code 2: a file is no such report.
 """
 
 import argparse
@@ -19,17 +19,34 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")
 FORMAT = "ligature doctor 1"
 
 
+class BadReport(Exception):
+    """One line that names a file which cannot be drawn."""
+
+
 def read(path):
-    with open(path, encoding="utf-8") as file:
-        report = json.load(file)
+    try:
+        with open(path, encoding="utf-8") as file:
+            report = json.load(file)
+    except OSError as error:
+        raise BadReport(f"{path}: cannot be read: {error.strerror}") from error
+    except (ValueError, RecursionError):  # no JSON
+        report = None
     if not isinstance(report, dict) or report.get("format") != FORMAT:
-        raise ValueError(f"{path}: found no report of 'ligature-firmware doctor --report'")
-    if not report["wakeup"]["count"]:
-        raise ValueError(f"{path}: no wake-up was measured; its verdict is '{report['verdict']}'")
+        raise BadReport(f"{path}: found no report, allowed one of 'ligature-firmware doctor --report'")
     return report
 
 
-def draw(axes, report, name, colour):
+def draw(axes, path, colour):
+    report = read(path)
+    try:
+        if not report["wakeup"]["count"]:
+            raise BadReport(f"{path}: no wake-up was measured; its verdict is '{report['verdict']}'")
+        draw_report(axes, report, os.path.basename(path), colour)
+    except (KeyError, TypeError, ValueError) as error:
+        raise BadReport(f"{path}: found a damaged report ({error!r}), allowed a whole one") from error
+
+
+def draw_report(axes, report, name, colour):
     wakeup = report["wakeup"]
     bins = wakeup["bins_us"]
     label = f"{name}: {report['machine']['kernel']}, {wakeup['count']} wake-ups, worst {wakeup['max_us']:.0f} us"
@@ -49,13 +66,16 @@ def main():
     try:
         figure, axes = plt.subplots(figsize=(9, 5), layout="constrained")
         for i, path in enumerate(arguments.reports):
-            draw(axes, read(path), os.path.basename(path), COLOURS[i % len(COLOURS)])
+            draw(axes, path, COLOURS[i % len(COLOURS)])
         axes.set(xscale="log", yscale="log", xlabel="wake-up latency, us", ylabel="wake-ups in a bin of 1 us", xlim=(0.5, 12_000))
         axes.grid(alpha=0.3)
         axes.legend(fontsize="small")
         figure.savefig(part, format=os.path.splitext(arguments.out)[1][1:], dpi=150)
         os.replace(part, arguments.out)
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except BadReport as error:
+        print(error, file=sys.stderr)
+        return 2
+    except (OSError, ValueError) as error:
         print(error, file=sys.stderr)
         return 1
     finally:

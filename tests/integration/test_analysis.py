@@ -92,7 +92,7 @@ class Analysis(unittest.TestCase):
 
     def test_the_examples_of_the_page_run(self):
         examples = re.findall(r"```python\n(.*?)```", (ROOT / "docs/analysis.md").read_text(), re.S)
-        self.assertEqual(len(examples), 4)
+        self.assertEqual(len(examples), 5)
         environment = {**os.environ, "PYTHONPATH": os.environ["LIGATURE_LCM_PYTHON"]}
         said = [subprocess.run([sys.executable, "-c", code], cwd=self.folder, env=environment, check=True, capture_output=True, text=True).stdout
                 for code in examples]
@@ -101,7 +101,8 @@ class Analysis(unittest.TestCase):
         self.assertIn("last shape: 6 nodes", said[1])
         self.assertIn("2000 scene two.toml loaded", said[1])
         self.assertIn("firmware 0.1.0", said[2])
-        self.assertIn("[suture]", said[3])
+        self.assertIn("tick 0 was at", said[3])
+        self.assertIn("[suture]", said[4])
 
     def test_a_picture_of_the_thread_even_of_one_without_a_knot(self):
         def plot(*words):

@@ -133,6 +133,27 @@ class BadInput(unittest.TestCase):
         self.assertTrue((self.path / "link").is_symlink())
         self.refused(run("ligature-device", "--hand", "left", "--bus", f"local:{self.path}"), "folder")
 
+    def test_empty_names_of_files(self):
+        for program, options in (("ligature-firmware run", ("--scene", "--device", "--recorder", "--scenes")),
+                                 ("ligature-firmware admit", ("--scene", "--device")),
+                                 ("ligature-firmware rehearse", ("--scene", "--text-from")),
+                                 ("ligature-firmware doctor", ("--scene", "--device", "--report", "--compare")),
+                                 ("ligature-device", ("--scene", "--device", "--operator", "--faults", "--stats"))):
+            for option in options:
+                with self.subTest(program=program, option=option):
+                    second = ("b.json",) if option == "--compare" else ()
+                    self.refused(run(*program.split(), option, "", *second), f"{option}: found ''", "allowed a name")
+
+    def test_the_reason_of_a_rehearsal_arrives_in_a_file(self):
+        """A rehearsal may write no large file; stderr may be one, with much text in it already."""
+        told = self.path / "told"
+        for before in (0, 200_000):
+            told.write_text("-" * before)
+            with open(told, "a") as stderr:
+                done = subprocess.run([BIN / "ligature-firmware", "rehearse", "--scene", self.path / "nowhere.toml"], stderr=stderr, timeout=60)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("nowhere.toml", told.read_text())
+
     def test_words_that_are_no_command_or_knot(self):
         self.refused(run("ligature-firmware", "nope"), "nope", "run, admit, rehearse, doctor")
         self.refused(run("ligature-host", "nope"), "nope", "record", "replay")

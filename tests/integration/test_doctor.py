@@ -66,18 +66,50 @@ class Doctor(unittest.TestCase):
 
     def test_a_run_that_was_ended_says_so(self):
         report = self.folder / "b.json"
+        report.write_text("old")
         command = [BIN / "ligature-firmware", "doctor", "--seconds", "60", "--report", report]
         doctor = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.assertIn("measuring wake-ups", next(line for line in doctor.stderr if "measuring" in line))
+        self.assertEqual(report.read_text(), "old", "an old report stays until the new one is complete")
         doctor.send_signal(signal.SIGINT)
         told, _ = doctor.communicate(timeout=120)
         self.assertRegex(told, r"WARN  measured +\d+ s of 60 s")
+        self.assertIn("verdict", json.loads(report.read_text()))
+        self.assertEqual([p.name for p in self.folder.iterdir()], ["b.json"])
+
+    def test_a_report_that_cannot_be_written_is_refused_before_the_measurement(self):
+        os.mkfifo(self.folder / "pipe")
+        os.symlink("pipe", self.folder / "link")
+        os.symlink("nowhere", self.folder / "loose")
+        for target in ("pipe", "link", "loose", ".", "none/a.json"):
+            told = run("ligature-firmware", "doctor", "--seconds", 0, "--report", self.folder / target)
+            self.assertEqual(told.returncode, 2, told.stderr)
+            self.assertEqual(told.stdout, "", target)
+            self.assertIn(f"--report {self.folder / target}: ", told.stderr)
+        self.assertTrue((self.folder / "pipe").is_fifo())
+        self.assertEqual(sorted(p.name for p in self.folder.iterdir()), ["link", "loose", "pipe"])
+
+    def test_a_report_is_written_through_a_link(self):
+        (self.folder / "real.json").write_text("old")
+        os.symlink("real.json", self.folder / "link.json")
+        run("ligature-firmware", "doctor", "--seconds", 0, "--report", self.folder / "link.json")
+        self.assertTrue((self.folder / "link.json").is_symlink())
+        self.assertIn("verdict", json.loads((self.folder / "real.json").read_text()))
+
+    def test_a_file_that_is_no_report_is_named(self):
+        whole = {"format": "ligature doctor 1", "wakeup": {"count": 3}}
+        for name, text in (("text", "x,y,z\n"), ("other", "{}"), ("half", json.dumps(whole))):
+            (self.folder / name).write_text(text)
+            drawn = self.plot(self.folder / name)
+            self.assertEqual(drawn.returncode, 2, drawn.stderr)
+            self.assertRegex(drawn.stderr, rf"^ligature-host: {self.folder / name}: found .*\n$")
+        self.assertFalse((self.folder / "latency.png").exists())
 
     def test_a_report_without_a_measurement_is_not_plotted(self):
         report = self.folder / "c.json"
         run("ligature-firmware", "doctor", "--seconds", 0, "--report", report)
         drawn = self.plot(report)
-        self.assertNotEqual(drawn.returncode, 0)
+        self.assertEqual(drawn.returncode, 2)
         self.assertIn("no wake-up was measured", drawn.stderr)
         self.assertFalse((self.folder / "latency.png").exists())
 

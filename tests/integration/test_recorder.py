@@ -221,9 +221,21 @@ class Beside(Records):
         self.assertIn("40 recorded", self.report(first.log))
         size = first.log.stat().st_size
         again = self.recorder("--force")  # the lock ends with the process
-        self.until(again, lambda: not again.has(size))
+        self.until(again, lambda: not again.has(size), lambda: self.lcm.publish("LIGATURE_HELLO", b"hello"))
         self.say(again, ("LIGATURE_TICKS", batch(SESSION, 0, 20)))
         self.assertEqual(again.end()[0], 0)
+
+
+    def test_a_recording_that_force_would_replace_stays_until_a_message_comes(self):
+        (self.path / "a.lcmlog").write_bytes(b"precious")
+        waiting = self.enterContext(Recorder(self.path, "a.lcmlog", "--force", "--duration", "0.3"))
+        out, err = waiting.process.communicate(timeout=BOUND_S)
+        self.assertEqual(waiting.process.returncode, 3, out + err)
+        self.assertIn("no message came", err)
+        self.assertEqual((self.path / "a.lcmlog").read_bytes(), b"precious")
+        empty = self.enterContext(Recorder(self.path, "b.lcmlog", "--force", "--duration", "0.3"))
+        empty.process.communicate(timeout=BOUND_S)
+        self.assertFalse((self.path / "b.lcmlog").exists(), "nothing is left of a new file without a message")
 
 
 class Ends(Records):

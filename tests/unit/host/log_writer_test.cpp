@@ -18,7 +18,34 @@ TEST(LogWriter, ReplacesAFileOnlyWhenTold) {
   EXPECT_THROW(LogWriter(path, false), BadInput);
   EXPECT_EQ(test::text_of(path), "precious");
   LogWriter(path, true).close();
-  EXPECT_EQ(test::text_of(path), "");
+  EXPECT_EQ(test::text_of(path), "precious") << "nothing was written";
+  LogWriter log(path, true);
+  EXPECT_EQ(test::text_of(path), "precious");
+  test::write(log, kTicksChannel, test::batch_of(1, 0, 20));
+  EXPECT_NE(LogReader(path).next(), nullptr);
+  EXPECT_EQ(static_cast<std::int64_t>(std::filesystem::file_size(path)), log.bytes());
+}
+
+TEST(LogWriter, TouchesNoFileThatWasMovedAwayBeforeTheFirstWrite) {
+  const test::TestFolder folder;
+  const std::string path = folder.file("a.lcmlog"), kept = folder.file("kept.lcmlog");
+  test::write_text(path, "precious");
+  LogWriter log(path, true);
+  std::filesystem::rename(path, kept);
+  test::write(log, kTicksChannel, test::batch_of(1, 0, 20));
+  EXPECT_EQ(test::text_of(kept), "precious");
+  EXPECT_NE(LogReader(path).next(), nullptr);
+}
+
+TEST(LogWriter, RefusesToReplaceAFileThatCameInBetween) {
+  const test::TestFolder folder;
+  const std::string path = folder.file("a.lcmlog"), other = folder.file("other.lcmlog");
+  test::write_text(path, "precious");
+  LogWriter log(path, true);
+  test::write_text(other, "another's");
+  std::filesystem::rename(other, path);
+  EXPECT_THROW(test::write(log, kTicksChannel, test::batch_of(1, 0, 20)), BadInput);
+  EXPECT_EQ(test::text_of(path), "another's");
 }
 
 TEST(LogWriter, RefusesAFolderThatIsNotThere) {

@@ -47,6 +47,25 @@ TEST(Plot, SaysHowToGetAMissingPython) {
   EXPECT_FALSE(std::filesystem::exists(folder.file("forces.png")));
 }
 
+TEST(Plot, AlignsByGraspOnlyLogsThatHaveOne) {
+  const test::TestFolder folder;
+  const std::string log = write_log(folder), idle = folder.file("idle.lcmlog");
+  LogWriter writer(idle, false);
+  test::write(writer, kTicksChannel, test::batch_of(1, 0, 500));
+  writer.close();
+  for (const auto& [a, b] : {std::pair{log, idle}, std::pair{idle, log}}) {
+    try {
+      plot_comparison(a, b, folder.file("both.png"), "grasp", 0.0);
+      ADD_FAILURE();
+    } catch (const BadInput& error) {
+      EXPECT_EQ(error.what(), idle + ": --align grasp: the log has no grasp; align by start");
+    }
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder.file("both.png")));
+  plot_comparison(log, log, folder.file("both.png"), "grasp", 0.0);
+  EXPECT_TRUE(std::filesystem::exists(folder.file("both.png")));
+}
+
 TEST(Plot, RefusesPicturesItCannotDraw) {
   const test::TestFolder folder;
   const std::string log = write_log(folder);

@@ -107,6 +107,14 @@ TEST_F(PolylineFile, RefusesABadRowWithItsLine) {
   EXPECT_THROW(static_cast<void>(read_polyline_csv(folder_.file("missing.csv"), {})), BadInput);
 }
 
+TEST_F(PolylineFile, RefusesAHeaderThatHasAColumnTwice) {
+  EXPECT_EQ(refusal("x,y,z,X\n1,2,3,4\n"), ":1: header 'x,y,z,X' has two columns for 'x', allowed one");
+  EXPECT_TRUE(refusal("x,y,z,z_m\n1,2,3,4\n").ends_with("has two columns for 'z_m', allowed one"));
+  EXPECT_TRUE(refusal("t_s,time,node,x,y,z\n").ends_with("has two columns for 'time', allowed one"));
+  EXPECT_TRUE(refusal("t_s,node,node,x,y,z\n").ends_with("has two columns for 'node', allowed one"));
+  EXPECT_EQ(read("x,y,z,,\n1,2,3,,\n4,5,6,,\n7,8,9,,\n").points.size(), 3U) << "what is not read may be doubled";
+}
+
 TEST_F(PolylineFile, ALogGivesItsLastOrNearestShape) {
   LogWriter log(folder_.file("a.lcmlog"), false);
   test::write(log, kThreadChannel, test::thread_of(1000, test::overhand_points(100)));

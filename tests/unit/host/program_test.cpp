@@ -93,6 +93,33 @@ TEST_F(Program, NamesNoKnotFarFromTheTimeThatWasAskedFor) {
   }
 }
 
+TEST_F(Program, SaysWhatIsDamagedInALogWhoseKnotItNames) {
+  LogWriter log(folder_.file("a.lcmlog"), false);
+  for (const int tick : {0, 20}) test::write(log, kThreadChannel, test::thread_of(tick, test::overhand_points(100)));
+  log.close();
+  EXPECT_EQ(run("knot a.lcmlog"), 0);
+  EXPECT_EQ(err(), "");
+  std::filesystem::resize_file(folder_.file("a.lcmlog"), std::filesystem::file_size(folder_.file("a.lcmlog")) - 100);
+  EXPECT_EQ(run("knot a.lcmlog"), 0);
+  EXPECT_TRUE(out().starts_with("3_1")) << out();
+  EXPECT_TRUE(err().starts_with("ligature-host: a.lcmlog: file ends inside an event")) << err();
+  EXPECT_EQ(std::ranges::count(err(), '\n'), 1) << err();
+}
+
+TEST_F(Program, RefusesATraceOfASpanWithoutATick) {
+  LogWriter log(folder_.file("a.lcmlog"), false);
+  test::write(log, kTicksChannel, test::batch_of(1, 0, 20));
+  log.close();
+  EXPECT_EQ(run("export a.lcmlog --forces f.csv --trace t.json --trace-span 100 200"), 2);
+  EXPECT_EQ(err(),
+            "ligature-host: --trace-span: found 100 .. 200 s, where a.lcmlog has no tick; allowed a part of 0.000 .. "
+            "0.019 s\n");
+  EXPECT_FALSE(std::filesystem::exists(folder_.file("f.csv")));
+  EXPECT_FALSE(std::filesystem::exists(folder_.file("t.json")));
+  EXPECT_EQ(run("export a.lcmlog --forces f.csv --trace t.json --trace-span 0.01 200"), 0);
+  EXPECT_TRUE(std::filesystem::exists(folder_.file("t.json")));
+}
+
 TEST_F(Program, HelpTeachesEveryCommandByExample) {
   EXPECT_EQ(run("--help"), 0);
   EXPECT_NE(out().find("Example"), std::string::npos);
