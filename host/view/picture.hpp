@@ -48,7 +48,8 @@ class Picture {
   /// Marks the data as current although nothing new came: a paused recording is not outdated.
   void hold(Clock::time_point now);
 
-  /// Sets the content of a topic ("status", "scene", "knot", "view", "replay", "marks"). Pages receive it when it
+  /// Sets the content of a topic ("status", "scene", "knot", "view", "replay", "marks", "compare", "hands",
+  /// "recording"). Pages receive it when it
   /// changes and when they connect.
   void set(const std::string& topic, nlohmann::json what);
   void add_event(const nlohmann::json& event);

@@ -88,7 +88,7 @@ export class FlatView {
     const c = this.context, box = this.#frame(), isWide = width > height;
     c.setTransform(ratio, 0, 0, ratio, 0, 0);
     const [w, h] = [canvas.clientWidth / (isWide ? 2 : 1), canvas.clientHeight / (isWide ? 1 : 2)];
-    const scale = Math.min(...this.sides.map((s) => Math.min((0.8 * w) / box.size[SIDES[s].right], (0.6 * h) / box.size[SIDES[s].up])));
+    const scale = Math.min(...this.sides.map((s) => Math.min((0.8 * w) / box.size[SIDES[s].right], (0.58 * h) / box.size[SIDES[s].up])));
     this.metresPerPixel = 1 / scale;
     this.panes = [];
     this.sides.forEach((name, i) => this.#pane(name, { x: isWide ? i * w : 0, y: isWide ? 0 : i * h, w, h }, box, scale));
@@ -102,7 +102,7 @@ export class FlatView {
 
   #pane(name, { x, y, w, h }, box, scale) {
     const c = this.context, side = SIDES[name];
-    const place = (at) => [x + w / 2 + scale * (at[side.right] - box.centre[side.right]), y + 0.55 * h - scale * (at[side.up] - box.centre[side.up])];
+    const place = (at) => [x + w / 2 + scale * (at[side.right] - box.centre[side.right]), y + 0.5 * h - scale * (at[side.up] - box.centre[side.up])];
     const axis = (which, sign) => [0, 1, 2].map((j) => (j === which ? sign : 0));
     this.panes.push({ x, y, w, h, place, right: axis(side.right, 1), up: axis(side.up, 1), away: axis(side.near, -side.sign), metresPerPixel: () => 1 / scale });
     c.save();

@@ -74,9 +74,10 @@ export class Link {
  */
 function readToken() {
   const given = new URLSearchParams(location.hash.slice(1)).get('token');
-  if (given) {
-    sessionStorage.setItem('ligature-token', given);
-    history.replaceState(null, '', location.pathname);
-  }
-  return document.querySelector('meta[name=ligature-token]').content || sessionStorage.getItem('ligature-token') || '';
+  let kept = given;
+  try {
+    if (given) sessionStorage.setItem('ligature-token', given); else kept = sessionStorage.getItem('ligature-token');
+    if (given) history.replaceState(null, '', location.pathname);
+  } catch { /* storage is disabled in this browser: the token stays in the address */ }
+  return document.querySelector('meta[name=ligature-token]').content || kept || '';
 }

@@ -3,7 +3,7 @@ const FIRST_WAIT_MS = 1000, LONGEST_WAIT_MS = 32_000, SOUND_AFTER_MS = 10_000;
 
 export class Part {
   /**
-   * @param what {name, place(), make(attempt, signal), dispose?(value), text?(value, text), frame?(value, frame),
+   * @param what {name, place(), make(attempt, signal), dispose?(value), text?(value, text),
    * draw?(value, time_ms)}:
    * `place` returns the element that shows a failure; `make` returns the part's object, or a promise of it; `attempt`
    * is 0 at first and is used to change the module's address, because a browser does not load a failed module again.
@@ -34,7 +34,6 @@ export class Part {
   }
 
   text(text) { if (this.what.text) this.run((value) => this.what.text(value, text)); }
-  frame(frame) { if (this.what.frame) this.run((value) => this.what.frame(value, frame)); }
   draw(time_ms) { if (this.what.draw) this.run((value) => this.what.draw(value, time_ms)); }
 
   /** Reports a failure that did not occur inside one of the part's calls. */
