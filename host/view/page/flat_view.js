@@ -102,7 +102,8 @@ export class FlatView {
 
   #pane(name, { x, y, w, h }, box, scale) {
     const c = this.context, side = SIDES[name];
-    const place = (at) => [x + w / 2 + scale * (at[side.right] - box.centre[side.right]), y + 0.5 * h - scale * (at[side.up] - box.centre[side.up])];
+    const middle = h > w ? 0.5 : 0.55; // a low pane has the page's buttons over its upper part
+    const place = (at) => [x + w / 2 + scale * (at[side.right] - box.centre[side.right]), y + middle * h - scale * (at[side.up] - box.centre[side.up])];
     const axis = (which, sign) => [0, 1, 2].map((j) => (j === which ? sign : 0));
     this.panes.push({ x, y, w, h, place, right: axis(side.right, 1), up: axis(side.up, 1), away: axis(side.near, -side.sign), metresPerPixel: () => 1 / scale });
     c.save();
