@@ -1,7 +1,6 @@
 #include "firmware/app/doctor.hpp"
 
 #include <signal.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -12,7 +11,6 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <span>
 #include <thread>
 
 #include "firmware/app/admission.hpp"
@@ -21,6 +19,7 @@
 #include "firmware/app/doctor/hwlat.hpp"
 #include "firmware/app/doctor/load.hpp"
 #include "firmware/app/doctor/report.hpp"
+#include "firmware/app/doctor/report_file.hpp"
 #include "firmware/app/doctor/timerlat.hpp"
 #include "firmware/app/drive_checks.hpp"
 #include "firmware/app/rig_setup.hpp"
@@ -28,7 +27,6 @@
 #include "firmware/platform/idle_guard.hpp"
 #include "firmware/platform/monotonic_clock.hpp"
 #include "firmware/platform/realtime.hpp"
-#include "firmware/telemetry/disk.hpp"
 #include "protocol/device/device_file.hpp"
 
 namespace ligature::app {
@@ -246,34 +244,6 @@ std::string histogram(const rt::DurationStatistics& wakeup, const std::vector<st
 }
 
 namespace {
-
-/// The file that a report ends up in: a link is kept, and its target replaced.
-std::filesystem::path place_of_report(const std::string& path) {
-  std::error_code none;
-  const auto target = std::filesystem::canonical(path, none);
-  return target.empty() ? std::filesystem::absolute(path, none) : target;
-}
-
-/// Why no report can be written to `path`; empty: one can. The report is renamed to this name, which would turn a
-/// device or a pipe into a regular file.
-std::string objection_to_report(const std::string& path) {
-  namespace fs = std::filesystem;
-  std::error_code none;
-  const auto found = fs::status(path, none);
-  const bool is_loose_link = !fs::exists(found) && fs::is_symlink(fs::symlink_status(path, none));
-  if (is_loose_link || (fs::exists(found) && !fs::is_regular_file(found)))
-    return "is no regular file, allowed one or a new name";
-  if (access(place_of_report(path).parent_path().c_str(), W_OK | X_OK) != 0)
-    return "cannot be written, allowed a file in a folder that exists";
-  return {};
-}
-
-/// Writes the whole report or nothing, so that nobody ever reads half a report; an older report stays until then.
-bool write_report(const std::string& path, const DoctorReport& report) {
-  if (!objection_to_report(path).empty()) return false;  // the path may have changed since the start
-  const std::string text = to_json(report);
-  return telemetry::write_whole_file(place_of_report(path).string(), std::as_bytes(std::span(text)));
-}
 
 /// The checks that take time: hardware, CAN, wake-ups. Adds their rows to the report and prints them.
 void measure(const DoctorOptions& options, DoctorReport& report) {

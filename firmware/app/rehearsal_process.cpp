@@ -94,8 +94,8 @@ void hear(int from, std::string& words) {
 /// `cancelled` was set.
 std::optional<int> await(pid_t child, int from, std::chrono::milliseconds patience, const std::atomic<bool>& cancelled,
                          std::string& words) {
-  int status =
-      127 << 8;  // exit code 127; stays if waitpid() fails, as where the parent of this process ignored SIGCHLD
+  // What it stays if waitpid() fails, as where the parent of this process ignored SIGCHLD: exit code 127, a failure.
+  int status = 127 << 8;
   bool killed = false;
   for (const auto give_up = Clock::now() + patience; waitpid(child, &status, WNOHANG) == 0;) {
     if (!killed && (cancelled || Clock::now() >= give_up)) killed = kill(child, SIGKILL) == 0;

@@ -129,8 +129,8 @@ std::optional<ligature_msg::ack_t> SceneDesk::request(const ligature_msg::comman
     return refused(why);
   try {
     building_ = std::async(std::launch::async, [this, setup = next_, is_scene] { return build(setup, !is_scene); });
-  } catch (const std::exception& error) {  // no room for a thread
-    return refused(error.what());
+  } catch (const std::exception& error) {
+    return refused("no thread can be started for the change (" + std::string(error.what()) + ")");
   }
   asked_ = command;
   busy_ = true;

@@ -56,8 +56,8 @@ bool write_all(int fd, std::span<const std::byte> bytes, std::size_t at) noexcep
 }  // namespace
 
 std::variant<std::unique_ptr<FileDisk>, std::string> FileDisk::make(const std::string& path, std::size_t size) {
-  if (is_in_use(path)) return "flight recorder " + path + ": another process records into it";
   if (is_foreign(path)) return "flight recorder " + path + ": is no recording of a flight recorder, name another file";
+  if (is_in_use(path)) return "flight recorder " + path + ": another process records into it";
   std::rename(path.c_str(), (path + ".previous").c_str());  // fails harmlessly if there is no earlier file
   const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
   if (fd < 0) return refusal(path, "cannot be made", errno);

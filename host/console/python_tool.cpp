@@ -35,8 +35,8 @@ std::string find_script(const std::string& name, const fs::path& source_folder) 
 /// removes its unfinished output file.
 int status_of(pid_t child) {
   constexpr int kLook_ms = 20;
-  int status =
-      127 << 8;  // exit code 127; stays if waitpid() fails, as where the parent of this process ignored SIGCHLD
+  // What it stays if waitpid() fails, as where the parent of this process ignored SIGCHLD: exit code 127, a failure.
+  int status = 127 << 8;
   bool is_told = false;
   for (;;) {
     const pid_t ended = waitpid(child, &status, WNOHANG);

@@ -49,8 +49,7 @@ class Picture {
   void hold(Clock::time_point now);
 
   /// Sets the content of a topic ("status", "scene", "knot", "view", "replay", "marks", "compare", "hands",
-  /// "recording"). Pages receive it when it
-  /// changes and when they connect.
+  /// "recording"). Pages receive it when it changes and when they connect.
   void set(const std::string& topic, nlohmann::json what);
   void add_event(const nlohmann::json& event);
 

@@ -31,7 +31,7 @@ RULES = {
     "firmware/thread_context.hpp": (["firmware/rt", "firmware/control", "firmware/physics", "firmware/clock.hpp"], []),
     "firmware/app": (["firmware", "protocol", "ligature_msg"], ["CLI/", "spdlog/", "OS"]),
     # Reports about the machine, read and written by `doctor` alone: never while the rig runs.
-    "firmware/app/doctor": (["firmware/app", "firmware/platform"], ["nlohmann/", "OS"]),
+    "firmware/app/doctor": (["firmware/app", "firmware/platform", "firmware/telemetry/disk.hpp"], ["nlohmann/", "OS"]),
     # Lets a web page steer a simulated hand; in a folder of its own, because the firmware must not include it.
     "sim_device/page": (["sim_device", "protocol/lcm", "ligature_msg"], ["ruckig/", "Eigen/", "lcm/", "OS"]),
     # A simulated operator that sees the thread by LCM messages, which anybody may have sent.

@@ -105,8 +105,8 @@ std::string objection_to(const scene::Scene& scene) {
   return {};
 }
 
-/// Reason why the rod cannot start in its present shape, or an empty string. Contact would throw away a thread whose
-/// axis lies below the desk, by hundreds of metres per second.
+/// Reason why the rod cannot start in its present shape, or an empty string. If the thread's axis lay below the desk,
+/// contact would throw it up at hundreds of metres per second.
 std::string objection_to_start(const Rod& rod) {
   const auto& x = rod.state().x;
   for (std::size_t i = 0; i < x.size(); ++i) {

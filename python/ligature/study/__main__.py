@@ -11,8 +11,8 @@ from ligature.study import Study
 DONE, BAD_INPUT, RUN_FAILED, INTERRUPTED = 0, 2, 3, 130
 ABOUT = """Many runs over parameters and seeds: rows in DIR/rows (Parquet), one for each run. Called again, it does what has
 no row yet, also after it was killed. Keys of STUDY.toml, tasks and columns: docs/studies.md."""
-EXIT = """Exit: 0 done; 2 bad usage or input, nothing written; 3 a run failed, its row has the reason, or a file could not be written; 130 interrupted,
-finished runs are kept.
+EXIT = """Exit: 0 done; 2 bad usage or input, nothing written; 3 a run failed, its row has the reason, or a file
+could not be written; 130 interrupted, finished runs are kept.
 
 Examples
   ligature-lab study STUDY.toml --out out/study                      every core of this machine

@@ -127,6 +127,11 @@ TEST_F(MachineTest, CanInterfaces) {
   put("proc/irq/17/smp_affinity_list", "0");
   details = "can state ERROR-ACTIVE \n\t bitrate 1000000 sample-point 0.800 \n";
   for (const auto& check : check_can(machine, "can0", 1)) EXPECT_EQ(check.grade, Grade::kOk) << check.what;
+  put("proc/interrupts", " 17:   5   6   IO-APIC   17-fasteoi   can0\n 18:   5   6   IO-APIC   18-fasteoi   can0");
+  put("proc/irq/18/smp_affinity_list", "1");
+  EXPECT_EQ(grade(check_can(machine, "can0", 1), "CAN interrupt"), Grade::kWarn) << "the second of two interrupts";
+  put("proc/irq/18/smp_affinity_list", "0");
+  EXPECT_EQ(grade(check_can(machine, "can0", 1), "CAN interrupt"), Grade::kOk);
   details = "can state BUS-OFF \n\t bitrate 1000000 sample-point 0.800 \n";
   EXPECT_EQ(grade(check_can(machine, "can0", 1), "CAN"), Grade::kFail) << "up, and yet off the bus";
   details = "can state ERROR-ACTIVE \n\t bitrate 500000 sample-point 0.875 \n";

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -91,11 +92,13 @@ TEST_F(FlightSlotsTest, RefusesAFolderThatIsNotThereAndADiskThatIsFull) {
 }
 
 TEST_F(FlightSlotsTest, LeavesAloneWhatNoRecorderWrote) {
-  const std::string notes = folder.file("notes.txt"), link = folder.file("link"), name = folder.file("folder");
+  const std::string notes = folder.file("notes.txt"), link = folder.file("link"), name = folder.file("folder"),
+                    pipe = folder.file("pipe");
   std::ofstream(notes) << "a user's own notes";
   std::filesystem::create_symlink(notes, link);
   std::filesystem::create_directory(name);
-  for (const auto& taken : {notes, link, name}) {
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);  // to open it would wait for a writer
+  for (const auto& taken : {notes, link, name, pipe}) {
     EXPECT_TRUE(std::holds_alternative<std::string>(FileDisk::make(taken, 1000))) << taken;
     EXPECT_TRUE(std::filesystem::exists(std::filesystem::symlink_status(taken))) << taken;
     EXPECT_FALSE(std::filesystem::exists(std::filesystem::symlink_status(taken + ".previous"))) << taken;
